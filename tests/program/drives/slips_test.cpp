@@ -297,6 +297,25 @@ TEST_CASE("slips: a clock off by 1 s or by leap seconds is named before the fusi
 }
 
 TEST_CASE(
+    "slips: a stretch of a sound drive, with an odometry that is silent at times, shows no other clock") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"simulate", "--preset", "two-odometries", "--duration", "900", "-o", folder}).code == 0);
+  const std::string whole = read_text(folder + "drive.yaml");
+  // The wheels begin at rest, are silent from 17 to 68 s, and go on at a constant speed.
+  for (const char* stretch : {"from: 0, to: 90", "from: 0, to: 200", "from: 450, to: 540"}) {
+    CAPTURE(stretch);
+    std::string text = whole;
+    text.replace(text.find("{scale: gps}"), 1, "{" + std::string(stretch) + ", ");
+    write_text(folder + "drive.yaml", text);
+    const RunResult result = run({"run", folder + "drive.yaml", "-o", folder + "out"});
+    INFO(result.err);
+    CHECK(result.code == 0);
+    CHECK_FALSE(contains(result.err, "clock"));
+    CHECK_FALSE(contains(result.err, "left out"));
+  }
+}
+
+TEST_CASE(
     "slips: logs whose clocks have nothing in common are refused with the offset, and --sync joins them") {
   const std::string folder = fresh_folder();
   for (const auto& [seconds, name] :

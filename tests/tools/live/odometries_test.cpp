@@ -2,6 +2,7 @@
 // falls silent. Also the header of an output whose readers connect late.
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -218,6 +219,34 @@ TEST_CASE("an odometry that falls silent is replaced by the next one, and takes 
     CHECK(waymark_test::rms(waymark_test::errors_m(said, drive)) <
           1.5 * waymark_test::rms(waymark_test::errors_m(whole, drive)));
   }
+}
+
+TEST_CASE("an odometry that the others contradict is used no longer when the drive has shown it", "[live]") {
+  LiveDrive drive = waymark_test::live_drive("mixed", 300);
+  add_exact_odometry(drive);
+  const Said sound = listen_to_both(drive, nothing);
+  CHECK(sound.count("left_out") == 0);
+  std::string wrong;
+  SECTION("the one that gives the nodes, in km/h: the estimate begins anew with the other one") {
+    wrong = "wheels";
+    for (Sample& sample : drive.arrivals)
+      if (auto* odometry = std::get_if<OdometrySample>(&sample)) odometry->speed_mps *= 3.6;
+  }
+  SECTION("another one, whose turns have the wrong sign") {
+    wrong = "visual";
+    for (Sample& sample : drive.arrivals)
+      if (auto* odometry = std::get_if<FurtherOdometry>(&sample)) odometry->yaw_rate_radps *= -1;
+  }
+  const Said said = listen_to_both(drive, nothing);
+  REQUIRE(said.count("left_out") == 1);
+  for (const Event& event : said.events)
+    if (event.kind == "left_out") CHECK(event.source == wrong);
+  CHECK(said.counts.refused.at(wrong + ": left out") > 500);
+  const auto of_the_end = [&](const Said& of) {
+    const std::vector<double> errors = waymark_test::errors_m(of, drive);
+    return waymark_test::rms(std::span(errors).last(errors.size() / 3));
+  };
+  CHECK(of_the_end(said) < 1.5 * of_the_end(sound));
 }
 
 TEST_CASE("while all odometries are silent the state is lost, and is told once", "[live]") {

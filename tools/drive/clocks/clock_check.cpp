@@ -43,28 +43,39 @@ bool lies_within(const Fix& fix, const std::vector<OdometrySample>& odometry) {
   return fix.stamp >= odometry.front().stamp && fix.stamp <= odometry.back().stamp;
 }
 
+std::size_t count_within(const LoggedMotion& motion) {
+  return static_cast<std::size_t>(
+      std::count_if(motion.fixes.begin(), motion.fixes.end(),
+                    [&](const Fix& fix) { return lies_within(fix, motion.odometry()); }));
+}
+
 [[noreturn]] void refuse(const LoggedMotion& motion, const std::optional<ClockOffset>& offset,
                          const DriveDescription& description) {
-  const auto outside = std::count_if(motion.fixes.begin(), motion.fixes.end(),
-                                     [&](const Fix& fix) { return !lies_within(fix, motion.odometry()); });
   throw InputError(
       fmt::format("{}: {} of {} fixes lie outside the odometry: odometry {}, fixes {} on the "
                   "scale '{}'; {}",
-                  description.path, outside, motion.fixes.size(), span_text(motion.odometry()),
-                  span_text(motion.fixes), to_string(description.scale()), explanation(motion, offset)));
+                  description.path, motion.fixes.size() - count_within(motion), motion.fixes.size(),
+                  span_text(motion.odometry()), span_text(motion.fixes), to_string(description.scale()),
+                  explanation(motion, offset)));
+}
+
+/// Returns all that is logged: a stated stretch of the drive says nothing of clocks.
+LoggedMotion whole_motion(const DriveLogs& logs, DriveDescription description) {
+  description.from_s.reset();
+  description.to_s.reset();
+  return logged_motion(logs, description);
 }
 
 /// @throws InputError if no fix lies within the odometry
 void refuse_without_overlap(const DriveLogs& logs, const DriveDescription& description) {
-  const LoggedMotion motion = logged_motion(logs, description);
-  const auto within = [&](const Fix& fix) { return lies_within(fix, motion.odometry()); };
-  if (!motion.fixes.empty() && std::none_of(motion.fixes.begin(), motion.fixes.end(), within))
-    refuse(motion, logged_offset(motion), description);
+  const LoggedMotion motion = whole_motion(logs, description);
+  if (!motion.fixes.empty() && count_within(motion) == 0) refuse(motion, logged_offset(motion), description);
 }
 
 /// @throws InputError if most fixes lie outside the odometry, and the motion of both fits elsewhere
 void refuse_wrong_clock(const DriveLogs& logs, const DriveDescription& description) {
-  const LoggedMotion motion = logged_motion(logs, description);
+  const LoggedMotion motion = whole_motion(logs, description);
+  if (2 * count_within(motion) >= motion.fixes.size()) return;
   const std::optional<ClockOffset> offset = logged_offset(motion);
   constexpr double kOneClock_s = 2;
   if (offset && std::abs(offset->late_s) > kOneClock_s) refuse(motion, offset, description);
@@ -72,8 +83,9 @@ void refuse_wrong_clock(const DriveLogs& logs, const DriveDescription& descripti
 
 /// Prepares a drive of several odometries again, without those that the fixes contradict.
 PreparedDrive without_contradicted(PreparedDrive drive, const DriveLogs& logs,
-                                   const DriveDescription& description) {
-  const OdometryCheck check = check_odometries(drive);
+                                   const DriveDescription& description,
+                                   const std::vector<std::string>& suspects) {
+  const OdometryCheck check = check_odometries(drive, suspects);
   if (!check.left_out.empty()) {
     DriveLogs fewer = logs;
     DriveDescription rest = description;
@@ -85,6 +97,7 @@ PreparedDrive without_contradicted(PreparedDrive drive, const DriveLogs& logs,
       fewer.odometry.erase(fewer.odometry.begin() + static_cast<std::ptrdiff_t>(i));
     }
     drive = prepare_drive(fewer, rest);
+    drive.report.left_out = check.left_out;
   }
   std::vector<std::string>& warnings = drive.report.warnings;
   warnings.insert(warnings.end(), check.warnings.begin(), check.warnings.end());
@@ -116,7 +129,8 @@ LoggedMotion logged_motion(const DriveLogs& logs, const DriveDescription& descri
   return motion;
 }
 
-PreparedDrive prepare_on_one_clock(const DriveLogs& logs, const DriveDescription& description) {
+PreparedDrive prepare_on_one_clock(const DriveLogs& logs, const DriveDescription& description,
+                                   const std::vector<std::string>& suspects) {
   PreparedDrive drive;
   try {
     drive = prepare_drive(logs, description);
@@ -128,7 +142,7 @@ PreparedDrive prepare_on_one_clock(const DriveLogs& logs, const DriveDescription
   const PrepareReport& report = drive.report;
   if (report.fixes_outside_odometry > drive.fixes.size() + report.fixes_thinned)
     refuse_wrong_clock(logs, description);
-  if (!drive.relative.empty()) return without_contradicted(std::move(drive), logs, description);
+  if (!drive.relative.empty()) return without_contradicted(std::move(drive), logs, description, suspects);
   if (const std::optional<ClockOffset> offset = offset_shown(drive.odometry, drive.fixes))
     drive.report.warnings.push_back(clock_warning("the odometry", *offset, remedy(*offset)));
   return drive;

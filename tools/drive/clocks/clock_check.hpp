@@ -2,6 +2,7 @@
 /// stamps belong together.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <waymark/tools/drive/logs/prepare.hpp>
@@ -10,9 +11,11 @@ namespace waymark::drive {
 
 /// prepare_drive(), and a warning if odometry and fixes fit at another offset of their clocks. Several odometries
 /// are compared one by one, and those that the fixes contradict are left out (odometry_check.hpp).
+/// @param suspects odometries that were left out of an earlier part of the drive
 /// @throws InputError what prepare_drive throws; and if most fixes lie outside the odometry and their motion
 /// fits elsewhere, or nowhere: it names the offset and the remedy
-[[nodiscard]] PreparedDrive prepare_on_one_clock(const DriveLogs& logs, const DriveDescription& description);
+[[nodiscard]] PreparedDrive prepare_on_one_clock(const DriveLogs& logs, const DriveDescription& description,
+                                                 const std::vector<std::string>& suspects = {});
 
 /// All odometries and the fixes of all receivers, less their stated delays: nothing is cut to the time of the
 /// other.

@@ -19,6 +19,15 @@ constexpr std::size_t kLeastSamples = 20;
 constexpr double kReach = 1.5;  // s about the place where the logs fit
 constexpr double kOutlier = 4;  // median absolute deviations, scaled to a standard deviation
 
+/// Tells whether a series has values all the time. @param silence_s longest time between two readings
+bool is_covered(const TimeSeries& series, Stamp from, Stamp to, double silence_s) {
+  const double length_s = seconds_between(from, to);
+  const double steps = std::ceil(length_s / silence_s);
+  for (double i = 0; i <= steps; ++i)
+    if (!value_at(series, from.later(length_s * i / steps), silence_s)) return false;
+  return true;
+}
+
 /// A line through pairs (odometry, GNSS), and the quality of its fit.
 struct Line {
   double slope = 0;
@@ -55,11 +64,11 @@ class Correlator {
       : integral_(odometry), about_s_(about_s) {
     // Only stretches that the odometry covers at every offset are used, so that the same readings
     // judge all offsets.
-    for (const Stretch& stretch : stretches) {
-      if (stretch.from.later(about_s - kReach) >= odometry.stamps.front() &&
-          stretch.to.later(about_s + kReach) <= odometry.stamps.back())
+    const double silence_s = longest_silence_s(odometry, kLongestSilence_s);
+    for (const Stretch& stretch : stretches)
+      if (is_covered(odometry, stretch.from.later(about_s - kReach), stretch.to.later(about_s + kReach),
+                     silence_s))
         stretches_.push_back(stretch);
-    }
   }
 
   [[nodiscard]] std::size_t size() const { return stretches_.size(); }

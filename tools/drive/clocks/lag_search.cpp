@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <waymark/tools/drive/clocks/common_motion.hpp>
+#include <waymark/tools/drive/logs/time_series.hpp>
+
 namespace waymark::drive {
 namespace {
 
@@ -15,8 +18,13 @@ constexpr double kLeastScore = 12;  // e^12 against chance: thousands of alignme
 constexpr double kLeastLead = 5;    // over an alignment elsewhere
 constexpr double kElsewhere_s = 5;  // farther than the motion resembles itself
 constexpr double kSoundCorrelation = 0.5;
+constexpr double kNextReading_s = 5;  // a later one has no reading before it
 
 }  // namespace
+
+void LagSearch::Grid::add(double value) {
+  integral.push_back(integral.back() + kTick_s * value);
+}
 
 double LagSearch::Grid::at(double time_s) const {
   const double tick = std::clamp(time_s / kTick_s, 0.0, static_cast<double>(integral.size() - 1));
@@ -33,16 +41,18 @@ LagSearch::LagSearch(const std::vector<OdometrySample>& odometry, const GnssMoti
                      const GnssMotion& turns) {
   const Stamp first = odometry.front().stamp;
   length_s_ = seconds_between(first, odometry.back().stamp);
+  const double silence_s =
+      longest_silence_s(series_of(odometry, &OdometrySample::speed_mps), kLongestSilence_s);
   const auto ticks = static_cast<std::size_t>(std::max(1.0, std::floor(length_s_ / kTick_s)));
-  speed_.integral.assign(1, 0);
-  yaw_rate_.integral.assign(1, 0);
   std::size_t next = 0;
   for (std::size_t tick = 0; tick < ticks; ++tick) {
     const double middle_s = (static_cast<double>(tick) + 0.5) * kTick_s;
     while (next + 1 < odometry.size() && seconds_between(first, odometry[next + 1].stamp) <= middle_s) ++next;
     // The speed of a receiver has no sign.
-    speed_.integral.push_back(speed_.integral.back() + kTick_s * std::abs(odometry[next].speed_mps));
-    yaw_rate_.integral.push_back(yaw_rate_.integral.back() + kTick_s * odometry[next].yaw_rate_radps);
+    speed_.add(std::abs(odometry[next].speed_mps));
+    yaw_rate_.add(odometry[next].yaw_rate_radps);
+    const std::size_t after = std::min(next + 1, odometry.size() - 1);
+    silent_.add(seconds_between(odometry[next].stamp, odometry[after].stamp) > silence_s ? 1 : 0);
   }
   add(speeds, first, speeds_);
   add(turns, first, turns_);
@@ -59,30 +69,18 @@ void LagSearch::add(const GnssMotion& motion, Stamp first, std::vector<Reading>&
 
 double LagSearch::correlation(const Grid& grid, const std::vector<Reading>& readings, double late_s,
                               double& score) const {
-  double n = 0;
-  double x = 0;
-  double y = 0;
-  double xx = 0;
-  double xy = 0;
-  double yy = 0;
+  CommonMotion common;
+  double last_s = -kNextReading_s;
   for (const Reading& reading : readings) {
     const double from_s = reading.from_s + late_s;
     const double to_s = reading.to_s + late_s;
-    if (from_s < 0 || to_s > length_s_) continue;
-    const double own = grid.mean(from_s, to_s);
-    n += 1;
-    x += own;
-    y += reading.value;
-    xx += own * own;
-    xy += own * reading.value;
-    yy += reading.value * reading.value;
+    if (from_s < 0 || to_s > length_s_ || silent_.mean(from_s, to_s) > 0) continue;
+    common.add(grid.mean(from_s, to_s), reading.value, from_s - last_s < kNextReading_s);
+    last_s = to_s;
   }
-  if (n < kLeastReadings) return -1;
-  const double variances = (xx - x * x / n) * (yy - y * y / n);
-  const double r = variances > 0 ? (xy - x * y / n) / std::sqrt(variances) : 0;
-  constexpr double kPerfect = 0.999'999;  // the logarithm stays finite
-  if (r > 0) score += -0.5 * n * std::log(1 - std::min(r, kPerfect) * std::min(r, kPerfect));
-  return r;
+  if (common.size() < kLeastReadings) return -1;
+  score += common.score();
+  return common.correlation();
 }
 
 std::optional<Lag> LagSearch::at(double late_s) const {

@@ -9,11 +9,13 @@
 
 namespace waymark::drive {
 
+/// An odometry is silent between samples that are further apart than this, in s, and than 2.5 usual intervals.
+inline constexpr double kLongestSilence_s = 1;
+
 /// One alignment of the logs. If the odometry's stamps are reduced by late_s, they fit.
 struct Lag {
   double late_s = 0;
-  /// -n/2 log(1 - r^2) of speed and of yaw rate, added: the log-likelihood of a common motion against none, as
-  /// if the n readings were independent. A correlation below 0 counts as none.
+  /// CommonMotion::score() of speed and of yaw rate, added
   double score = 0;
   double speed_correlation = 0;
   double turn_correlation = 0;
@@ -33,11 +35,11 @@ class LagSearch {
   [[nodiscard]] std::optional<Lag> find(double largest_s) const;
 
  private:
-  /// Means of the odometry over any time, in constant time.
+  /// Means over any time, in constant time.
   struct Grid {
-    double begin_s = 0;  ///< after the first sample
-    std::vector<double> integral;
+    std::vector<double> integral{0};
 
+    void add(double value);
     [[nodiscard]] double mean(double from_s, double to_s) const;
     [[nodiscard]] double at(double time_s) const;
   };
@@ -52,6 +54,7 @@ class LagSearch {
 
   Grid speed_;
   Grid yaw_rate_;
+  Grid silent_;  ///< 1 where the odometry has a gap
   std::vector<Reading> speeds_;
   std::vector<Reading> turns_;
   double length_s_ = 0;  ///< of the odometry

@@ -71,6 +71,7 @@ struct PrepareReport {
   std::vector<std::string> notes;
   /// sentences about readings that contradict each other
   std::vector<std::string> warnings;
+  std::vector<std::string> left_out;  ///< odometries that the fixes contradict: names
   std::vector<std::string> corrupt_examples;
 };
 

@@ -49,6 +49,7 @@ PlacedDrive begun(const PreparedDrive& drive, const Timeline& timeline, const Fu
   placed.time_offsets_s.assign(unnamed ? 1 : drive.receivers.size(), 0.0);
   placed.first_pose = drive.first_pose;
   placed.odometry_name = drive.odometry_name;
+  placed.left_out = drive.report.left_out;
   placed.relative = drive.relative;
   if (!placed.relative.empty()) placed.runs = motion_runs(timeline, placed.relative, placed.fixes);
   placed.gap_noise_factor = drive.timeline.gap_noise_factor;
@@ -87,7 +88,10 @@ void reject_all_of(int source, PlacedDrive& placed) {
 bool leave_out_outvoted(std::span<const std::size_t> voices, PlacedDrive& placed) {
   const ComparedReceivers compared = compare_receivers(placed.fixes, poses_of_fixes(placed));
   const std::vector<int> wrong = outvoted(compared, voices);
-  for (const int source : wrong) reject_all_of(source, placed);
+  for (const int source : wrong) {
+    reject_all_of(source, placed);
+    placed.left_out.push_back(receiver_name(placed, source));
+  }
   for (const ConstantDifference& difference : compared.differ) {
     std::string end = consequence_of(difference);
     for (const int source : {difference.first, difference.second}) {

@@ -98,14 +98,21 @@ Middle middle_of(const std::array<std::vector<double>, 2>& axes) {
 
 constexpr std::size_t kFewestPairs = 20;
 
+/// Returns Student's quantile that is 3 for a Gaussian, by Fisher and Cornish's expansion.
+double three_sigmas(double degrees_of_freedom) {
+  const double share = 1 / degrees_of_freedom;
+  return 3 + share * (7.5 + share * (17.25 + share * 30.19));
+}
+
 /// Tells whether a median is more than what both claim and what it is known to.
 bool counts(const Middle& middle, const Differences& all, double claims_m) {
   constexpr double kClaims = 2;
-  constexpr double kSigmas = 3;
   constexpr double kErrorsLast_s = 60;
-  const double independent = std::max(1.0, seconds_between(all.from, all.to) / kErrorsLast_s);
-  return middle.value.norm() >=
-         std::max(kClaims * claims_m, kSigmas * middle.spread / std::sqrt(independent));
+  constexpr double kFewest = 3;
+  const double independent = seconds_between(all.from, all.to) / kErrorsLast_s;
+  if (independent < kFewest) return false;
+  const double sigma = middle.spread / std::sqrt(independent);
+  return middle.value.norm() >= std::max(kClaims * claims_m, three_sigmas(independent - 1) * sigma);
 }
 
 /// Where the second antenna is ahead, with the speed.

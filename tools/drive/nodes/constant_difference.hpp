@@ -36,9 +36,9 @@ struct ComparedReceivers {
 };
 
 /// Compares accepted fixes of two receivers within a second at the poses. The median difference counts if it is
-/// twice what both claim together, and three of its sigmas, for errors that last a minute. It is in the body if it
-/// is more constant there, beyond a tenth. It is one of clocks if nothing that counts is left without what grows
-/// with the speed.
+/// twice what both claim together, and three of its sigmas, for errors that last a minute; few minutes say
+/// little of their spread (Student), fewer than three nothing. It is in the body if it is more constant there,
+/// beyond a tenth. It is one of clocks if nothing that counts is left without what grows with the speed.
 /// @param fixes sorted by stamp
 /// @param poses common to all receivers, one for each fix: x, y [m, frame], heading [rad]. Their error cancels.
 [[nodiscard]] ComparedReceivers compare_receivers(std::span<const Fix> fixes,

@@ -150,19 +150,13 @@ void Estimator::work() {
   if (const std::optional<ClockJump> jump = intake_.jump()) {
     reset("jump", fmt::format("the clock of the odometry has jumped by {:.3f} s",
                               seconds_between(jump->from, jump->to)));
-    reckoning_.clear();
-    odometries_.clear();
-    guards_.assign(guards_.size(), {});
-    receivers_.clear();
-    fixes_.clear();
-    pending_.clear();
-    judge_.clear();
-    places_.forget_last();
+    forget_motion();
     so_far_.clear();
     learner_.forget();
   }
   while (std::optional<Sample> sample = intake_.next()) {
     so_far_.take(*sample);
+    if (is_left_out(*sample)) continue;
     if (const auto* odometry = std::get_if<OdometrySample>(&*sample)) {
       hear(0, *odometry);
     } else if (const auto* further = std::get_if<FurtherOdometry>(&*sample)) {
@@ -171,7 +165,28 @@ void Estimator::work() {
       pending_.push_back(std::move(*sample));
       if (!reckoning_.empty() && stamp_of(pending_.back()) <= now_) use_pending();
     }
+    learn();
   }
+}
+
+/// Forgets where the vehicle was, and what waits for a place.
+void Estimator::forget_motion() {
+  reckoning_.clear();
+  odometries_.clear();
+  guards_.assign(guards_.size(), {});
+  receivers_.clear();
+  fixes_.clear();
+  pending_.clear();
+  judge_.clear();
+  places_.forget_last();
+}
+
+bool Estimator::is_left_out(const Sample& sample) {
+  if (left_out_.empty()) return false;
+  const std::string source = source_of(sample);
+  if (std::find(left_out_.begin(), left_out_.end(), source) == left_out_.end()) return false;
+  says_.counts.refused[source + ": left out"] += 1;
+  return true;
 }
 
 /// Uses the fixes and readings that have odometry on both sides.
@@ -254,7 +269,6 @@ void Estimator::advance(std::size_t source, const OdometrySample& sample) {
     cycle();
     drop();
   }
-  learn();
   judge_state();
   if (window_) publish(false);
 }
@@ -415,53 +429,6 @@ void Estimator::drop() {
   const double stretch_s = std::clamp(live_.window_s / 6, kSecondsWithoutFix, kLongestStretch);
   if (!window_ || seconds_between(window_->oldest(), now_) < live_.window_s + stretch_s) return;
   says_.settle(window_->drop_before(now_.later(-live_.window_s)));
-}
-
-void Estimator::learn() {
-  if (std::optional<Learned> learned = learner_.result(now_)) adopt(std::move(*learned));
-  if (window_ && learner_.is_due(now_, so_far_.length_s())) begin_search();
-}
-
-void Estimator::begin_search() {
-  const auto task = std::make_shared<const SearchTask>(SearchTask{
-      so_far_, description_, stated_, *frame_, window_->inputs(), window_->oldest(), says_.counts.resets});
-  learner_.begin(now_, so_far_.length_s(),
-                 [task, &registry = registry_](const std::function<void()>& between) {
-                   return search(*task, registry, between);
-                 });
-}
-
-// The window is built again with the noise that the drive shows, and has the newest samples too.
-void Estimator::adopt(Learned learned) {
-  ++says_.counts.lessons;
-  const Lesson& lesson = learned.lesson;
-  const auto of_the_last = [&](const std::string& text) {
-    return fmt::format("the last {:.0f} s: {}", lesson.length_s, text);
-  };
-  for (const std::string& warning : lesson.warnings)
-    says_.say_once(now_, "warning", of_the_last(warning), warning);
-  if (!lesson.failure.empty())
-    says_.say_once(now_, "noise", of_the_last("they tell no noise: " + lesson.failure), lesson.failure);
-  if (lesson.noise.parameters.empty()) return;
-  setup_ = lesson.setup;
-  noise_ = lesson.noise;
-  spread_ = lesson.spread;
-  const std::string words = in_words(lesson.noise);
-  say("noise", "",
-      fmt::format("the last {:.0f} s tell: {}", lesson.length_s,
-                  words.empty() ? "no noise better than the usual" : words));
-  if (!window_ || !learned.window || learned.resets != says_.counts.resets) return;
-  learned.window->catch_up(window_->inputs(), learned.inputs);
-  if (!learned.window->solve()) return;
-  const std::vector<StampedPose> former = window_->remaining();
-  const auto kept = std::find_if(former.begin(), former.end(), [&](const StampedPose& pose) {
-    return pose.stamp >= learned.window->oldest();
-  });
-  says_.settle({former.begin(), kept});
-  window_ = std::move(learned.window);
-  ++says_.counts.solutions;
-  last_cycle_ = now_;
-  publish(true);
 }
 
 void Estimator::reset(const std::string& kind, const std::string& text) {

@@ -95,10 +95,15 @@ class Estimator {
   void begin_window(PlacedStretch stretch, std::optional<drive::FirstPose> first_pose);
   void cycle();
   void drop();
+  void forget_motion();
+  [[nodiscard]] bool is_left_out(const Sample& sample);
   void learn();
   void begin_search();
-  [[nodiscard]] Eigen::Matrix3d covariance() const;
   void adopt(Learned learned);
+  void tell(const Lesson& lesson);
+  void leave_out(const std::vector<std::string>& sources);
+  void take_over(Learned learned);
+  [[nodiscard]] Eigen::Matrix3d covariance() const;
   void reset(const std::string& kind, const std::string& text);
   void publish(bool corrected);
   void publish_place(const Fix& fix);
@@ -122,6 +127,7 @@ class Estimator {
   ReceiverComparison receivers_;
   DriveSoFar so_far_;
   Learner learner_;
+  std::vector<std::string> left_out_;                 // sources that the others contradict, as learned
   drive::NoiseEstimate noise_;                        // the last that was learned
   Eigen::Matrix3d spread_ = Eigen::Matrix3d::Zero();  // of the newest pose: noise_spread.hpp
   std::unique_ptr<Window> window_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/clocks/clock_check.hpp>
 #include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/model/fuse.hpp>
 #include <waymark/tools/drive/sensors/rough_fixes.hpp>
@@ -38,12 +39,12 @@ Eigen::Matrix3d mean_of(const std::vector<drive::PoseSpread>& spread) {
 }  // namespace
 
 Lesson learn(const DriveSoFar& so_far, const drive::DriveDescription& description,
-             const drive::FusionSettings& stated, const TypeRegistry& registry,
-             const std::function<void()>& between) {
+             const drive::FusionSettings& stated, const std::vector<std::string>& suspects,
+             const TypeRegistry& registry, const std::function<void()>& between) {
   Lesson lesson;
   lesson.length_s = so_far.length_s();
   try {
-    drive::PreparedDrive drive = drive::prepare_drive(so_far.logs(description), description);
+    drive::PreparedDrive drive = drive::prepare_on_one_clock(so_far.logs(description), description, suspects);
     take_readings(so_far.readings(), registry, drive);
     drive::ModeledDrive modeled = drive::Fusion(drive, registry, between).estimated(stated);
     lesson.noise = noise_ahead(std::move(modeled.noise), lesson.length_s);
@@ -53,6 +54,7 @@ Lesson learn(const DriveSoFar& so_far, const drive::DriveDescription& descriptio
     lesson.noise.spread.clear();
     lesson.setup.delays_s = std::move(modeled.placed.time_offsets_s);
     lesson.warnings = std::move(modeled.placed.warnings);
+    lesson.left_out = std::move(modeled.placed.left_out);
   } catch (const InputError& error) {
     lesson.failure = error.what();
   }

@@ -1,19 +1,38 @@
 #include <waymark/tools/live/learning/search.hpp>
 
-#include <waymark/tools/live/estimator/window/window_setup.hpp>
+#include <algorithm>
 
 namespace waymark::live {
 
+UnusedSources unused_sources(const drive::DriveDescription& description,
+                             const std::vector<std::string>& names) {
+  const auto is_named = [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  UnusedSources unused;
+  for (std::size_t source = 0; source < description.odometry.size(); ++source)
+    if (is_named(description.odometry[source].name)) unused.odometries.insert(source);
+  for (std::size_t source = 0; source < description.gnss.size(); ++source)
+    if (is_named(description.gnss[source].name)) unused.receivers.insert(static_cast<int>(source));
+  return unused;
+}
+
 Learned search(const SearchTask& task, const TypeRegistry& registry, const std::function<void()>& between) {
   Learned learned;
-  learned.lesson =
-      learn(task.so_far, described_so_far(task.description, task.frame), task.stated, registry, between);
+  learned.lesson = learn(task.so_far, described_so_far(task.description, task.frame), task.stated,
+                         task.left_out, registry, between);
   learned.inputs = task.inputs.count();
   learned.resets = task.resets;
-  if (learned.lesson.noise.parameters.empty()) return learned;
-  learned.window = make_window(task.description, learned.lesson.setup, task.frame,
-                               task.inputs.before().first_pose, registry);
-  if (!learned.window->begin_again(task.inputs, task.oldest)) learned.window.reset();
+  const Lesson& lesson = learned.lesson;
+  const bool has_noise = !lesson.noise.parameters.empty();
+  if (!lesson.failure.empty() || (!has_noise && lesson.left_out == task.left_out)) return learned;
+  const UnusedSources unused = unused_sources(task.description, lesson.left_out);
+  if (task.inputs.has_nodes_of(unused)) return learned;
+  WindowInputs inputs = task.inputs;
+  inputs.remove(unused);
+  learned.window = make_window(task.description, has_noise ? lesson.setup : task.setup, task.frame,
+                               inputs.before().first_pose, registry);
+  if (!learned.window->begin_again(inputs, task.oldest)) learned.window.reset();
   return learned;
 }
 

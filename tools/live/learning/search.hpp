@@ -4,9 +4,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/tools/live/estimator/window/window.hpp>
+#include <waymark/tools/live/estimator/window/window_setup.hpp>
 #include <waymark/tools/live/learning/drive_so_far.hpp>
 #include <waymark/tools/live/learning/lesson.hpp>
 
@@ -16,7 +19,9 @@ namespace waymark::live {
 struct SearchTask {
   DriveSoFar so_far;
   drive::DriveDescription description;
-  drive::FusionSettings stated;  ///< without what was learned before
+  drive::FusionSettings stated;       ///< without what was learned before
+  FusionSetup setup;                  ///< of the present window
+  std::vector<std::string> left_out;  ///< sources that are not used at present
   Frame frame;
   WindowInputs inputs;
   Stamp oldest;              ///< pose of the window
@@ -25,11 +30,16 @@ struct SearchTask {
 
 struct Learned {
   Lesson lesson;
-  /// with the noise of the lesson, at the time when the work began; null: it has no minimum
+  /// with the noise and the sources of the lesson, at the time when the work began; null: it has no minimum, or
+  /// what was learned is no reason to build it again, or its nodes are from a source that is left out
   std::unique_ptr<Window> window;
   std::uint64_t inputs = 0;  ///< how many of the former window it has
   std::uint32_t resets = 0;  ///< of the estimate at that time
 };
+
+/// @param names of sources; those that the description does not have are passed over
+[[nodiscard]] UnusedSources unused_sources(const drive::DriveDescription& description,
+                                           const std::vector<std::string>& names);
 
 /// @param registry must outlive the result @param between as for learn()
 [[nodiscard]] Learned search(const SearchTask& task, const TypeRegistry& registry,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <span>
 
 #include <waymark/tools/drive/nodes/constant_difference.hpp>
 #include <waymark/types_se2/se2.hpp>
@@ -75,6 +76,17 @@ TEST_CASE("constant difference: receivers that agree within their claims are not
   CHECK(compare_receivers(alike.fixes, alike.poses).differ.empty());
   const Scene near = circle({2, 2}, {0, 0});
   CHECK(compare_receivers(near.fixes, near.poses).differ.empty());
+}
+
+TEST_CASE("constant difference: two minutes do not tell errors that last from a difference that stays") {
+  const Scene scene = circle({8, -6}, {0, 0});
+  const auto differs_after = [&](std::size_t minutes) {
+    const std::size_t fixes = 2 * 60 * minutes;
+    return !compare_receivers(std::span(scene.fixes).first(fixes), std::span(scene.poses).first(fixes))
+                .differ.empty();
+  };
+  CHECK_FALSE(differs_after(2));
+  CHECK(differs_after(8));
 }
 
 TEST_CASE("constant difference: a straight way does not tell an antenna from a datum") {

@@ -37,6 +37,20 @@ void WindowInputs::forget_before(Stamp moment) {
   (void)forget(ways_, moment, 0);
 }
 
+void WindowInputs::remove(const UnusedSources& unused) {
+  std::erase_if(fixes_, [&](const Numbered<ClaimedFix>& fix) {
+    return unused.receivers.contains(fix.input.fix.source);
+  });
+  std::erase_if(
+      ways_, [&](const Numbered<MeasuredWay>& way) { return unused.odometries.contains(way.input.source); });
+}
+
+bool WindowInputs::has_nodes_of(const UnusedSources& unused) const {
+  return std::any_of(nodes_.begin(), nodes_.end(), [&](const Numbered<NodeInput>& node) {
+    return !node.input.interval.bridged && unused.odometries.contains(node.input.giver);
+  });
+}
+
 PlacedStretch WindowInputs::stretch() const {
   PlacedStretch stretch;
   for (const auto& [number, node] : nodes_) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -69,6 +70,12 @@ struct NodeInput {
   return way.to;
 }
 
+/// Sources whose samples are not used, by their indices.
+struct UnusedSources {
+  std::set<std::size_t> odometries;
+  std::set<int> receivers;
+};
+
 class WindowInputs {
  public:
   /// Inputs of one kind, each with its number among all.
@@ -99,6 +106,10 @@ class WindowInputs {
   void correct(std::span<const StampedPose> poses);
   /// Forgets what came before a moment. Two nodes stay.
   void forget_before(Stamp moment);
+  /// Removes fixes and ways of these sources. Nodes stay.
+  void remove(const UnusedSources& unused);
+  /// Tells whether the motion between any two nodes is that of one of these.
+  [[nodiscard]] bool has_nodes_of(const UnusedSources& unused) const;
   /// Returns nodes, fixes and ways as the begin of another window.
   [[nodiscard]] PlacedStretch stretch() const;
 
