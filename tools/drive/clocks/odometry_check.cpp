@@ -19,6 +19,7 @@ namespace {
 /// finds in part only, because receivers are not early.
 constexpr double kLateFixes_s = 0.3;
 constexpr double kLateOdometry_s = 0.2;
+constexpr double kFits = 0.5;  // correlation
 
 bool is_near_zero(double late_s) {
   return late_s > -kLateFixes_s && late_s < kLateOdometry_s;
@@ -29,7 +30,7 @@ std::optional<ClockOffset> offset_to(const std::vector<OdometrySample>& odometry
                                      const std::vector<Fix>& fixes) {
   const std::optional<ClockOffset> offset = estimate_clock_offsets(odometry, fixes, {}).common();
   if (!offset || !offset->is_significant() || is_near_zero(offset->late_s)) return std::nullopt;
-  return offset;
+  return offset->correlation > kFits ? offset : std::nullopt;
 }
 
 /// Takes what one more receiver says. The best known one stands. @returns whether it is that of those before
@@ -47,7 +48,6 @@ struct ClockVerdict {
 };
 
 constexpr std::size_t kFewestCompared = 30;  // fixes, and samples
-constexpr double kFits = 0.5;                // correlation
 
 /// Compares the neighbourhood of zero with a minute about it, and with everything if nothing fits at zero.
 ClockVerdict clock_verdict(const std::vector<OdometrySample>& odometry, const std::vector<Fix>& fixes) {

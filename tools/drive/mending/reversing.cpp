@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/detail/median.hpp>
+#include <waymark/tools/drive/logs/time_series.hpp>
 #include <waymark/tools/drive/mending/fix_motion.hpp>
 #include <waymark/tools/drive/nodes/yaw_rate_at_rest.hpp>
 
@@ -35,6 +36,8 @@ struct Way {
   Alignment begin;
   Alignment end;
   double length_m = 0;
+  std::size_t first_part = 0;  ///< of the odometry, at its begin: parts_of()
+  std::size_t last_part = 0;
   bool backwards = false;
 };
 
@@ -62,6 +65,18 @@ std::vector<Complex> positions_of(std::span<const OdometrySample> odometry) {
     heading += turn;
   }
   return positions;
+}
+
+/// Returns for each sample how many silences of the odometry were before it. How the vehicle turned in one is not
+/// known, so the frames of the odometry before and after it are two.
+std::vector<std::size_t> parts_of(std::span<const OdometrySample> odometry) {
+  constexpr double kSilence_s = 2;
+  const double silence_s = longest_silence_s(
+      series_of({odometry.begin(), odometry.end()}, &OdometrySample::speed_mps), kSilence_s);
+  std::vector<std::size_t> parts(odometry.size(), 0);
+  for (std::size_t i = 1; i < odometry.size(); ++i)
+    parts[i] = parts[i - 1] + (seconds_between(odometry[i - 1].stamp, odometry[i].stamp) > silence_s ? 1 : 0);
+  return parts;
 }
 
 /// Compares odometry and fixes.
@@ -138,6 +153,7 @@ class Comparison {
 
 std::vector<Way> ways_of(std::span<const OdometrySample> odometry, const Comparison& comparison) {
   std::vector<Way> ways;
+  const std::vector<std::size_t> parts = parts_of(odometry);
   for (std::size_t first = 0; first < odometry.size(); ++first) {
     if (odometry[first].speed_mps < kStands) continue;
     std::size_t last = first;
@@ -147,7 +163,9 @@ std::vector<Way> ways_of(std::span<const OdometrySample> odometry, const Compari
     Way way{.samples = {{first, last}},
             .begin = comparison.alignment(from, std::min(to, from.later(kEnd_s))),
             .end = comparison.alignment(std::max(from, to.later(-kEnd_s)), to),
-            .length_m = comparison.length_m(first, last)};
+            .length_m = comparison.length_m(first, last),
+            .first_part = parts[first],
+            .last_part = parts[last]};
     if (way.length_m >= kShortest_m && way.begin.weight_m > 0 && way.end.weight_m > 0) ways.push_back(way);
     first = last;
   }
@@ -161,7 +179,7 @@ double fit_of(const std::vector<Way>& ways, std::size_t i, std::span<const Odome
   const auto add = [&](const Way& earlier, const Way& later, const Way& other) {
     const double apart_s =
         seconds_between(odometry[earlier.samples.last].stamp, odometry[later.samples.first].stamp);
-    if (apart_s > kFurthest_s) return;
+    if (apart_s > kFurthest_s || earlier.last_part != later.first_part) return;
     const double agree = (later.begin.turn * std::conj(earlier.end.turn)).real();
     fit += sign * (other.backwards ? -1 : 1) * agree * std::min(earlier.end.weight_m, later.begin.weight_m);
   };

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include <waymark/core/base/angle.hpp>
 #include <waymark/tools/drive/mending/reversing.hpp>
 
 #include "winding_scene.hpp"
@@ -67,6 +68,18 @@ TEST_CASE("reversing: a drive forwards has none, also with fixes of 3 m") {
     fix.position += Eigen::Vector2d(noise(random), noise(random));
     fix.covariance = 9 * Eigen::Matrix2d::Identity();
   }
+  CHECK(find_reversing(made.odometry, made.fixes).empty());
+}
+
+TEST_CASE("reversing: a turn while the odometry was silent is no drive backwards") {
+  constexpr double kFrom = 85;  // between two stops
+  constexpr double kTo = 90;
+  const auto is_silent = [](double t) { return t > kFrom && t < kTo; };
+  WindingScene made = winding_scene(
+      225, [&](double t) { return is_silent(t) ? 4 : signed_speed(t, -1); },
+      [&](double t) { return is_silent(t) ? 180 * kDegree / (kTo - kFrom) : yaw_rate_at(t); });
+  std::erase_if(made.odometry,
+                [&](const OdometrySample& sample) { return is_silent(sample.stamp.seconds()); });
   CHECK(find_reversing(made.odometry, made.fixes).empty());
 }
 
