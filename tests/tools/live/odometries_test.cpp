@@ -242,6 +242,10 @@ TEST_CASE("an odometry that the others contradict is used no longer when the dri
   for (const Event& event : said.events)
     if (event.kind == "left_out") CHECK(event.source == wrong);
   CHECK(said.counts.refused.at(wrong + ": left out") > 500);
+  std::size_t begun_anew = 0;
+  for (const Event& event : said.events)
+    begun_anew += event.text.find("is left out now") != std::string::npos;
+  CHECK(begun_anew == (wrong == "wheels" ? 1 : 0));
   const auto of_the_end = [&](const Said& of) {
     const std::vector<double> errors = waymark_test::errors_m(of, drive);
     return waymark_test::rms(std::span(errors).last(errors.size() / 3));

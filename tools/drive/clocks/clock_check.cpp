@@ -59,26 +59,32 @@ std::size_t count_within(const LoggedMotion& motion) {
                   explanation(motion, offset)));
 }
 
-/// Returns all that is logged: a stated stretch of the drive says nothing of clocks.
-LoggedMotion whole_motion(const DriveLogs& logs, DriveDescription description) {
+/// Returns all that is logged: a stated stretch of the drive says nothing of clocks. Empty if the rest of the logs
+/// cannot be used.
+std::optional<LoggedMotion> whole_motion(const DriveLogs& logs, DriveDescription description) {
   description.from_s.reset();
   description.to_s.reset();
-  return logged_motion(logs, description);
+  try {
+    return logged_motion(logs, description);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 /// @throws InputError if no fix lies within the odometry
 void refuse_without_overlap(const DriveLogs& logs, const DriveDescription& description) {
-  const LoggedMotion motion = whole_motion(logs, description);
-  if (!motion.fixes.empty() && count_within(motion) == 0) refuse(motion, logged_offset(motion), description);
+  const std::optional<LoggedMotion> motion = whole_motion(logs, description);
+  if (motion && !motion->fixes.empty() && count_within(*motion) == 0)
+    refuse(*motion, logged_offset(*motion), description);
 }
 
 /// @throws InputError if most fixes lie outside the odometry, and the motion of both fits elsewhere
 void refuse_wrong_clock(const DriveLogs& logs, const DriveDescription& description) {
-  const LoggedMotion motion = whole_motion(logs, description);
-  if (2 * count_within(motion) >= motion.fixes.size()) return;
-  const std::optional<ClockOffset> offset = logged_offset(motion);
+  const std::optional<LoggedMotion> motion = whole_motion(logs, description);
+  if (!motion || 2 * count_within(*motion) >= motion->fixes.size()) return;
+  const std::optional<ClockOffset> offset = logged_offset(*motion);
   constexpr double kOneClock_s = 2;
-  if (offset && std::abs(offset->late_s) > kOneClock_s) refuse(motion, offset, description);
+  if (offset && std::abs(offset->late_s) > kOneClock_s) refuse(*motion, offset, description);
 }
 
 /// Prepares a drive of several odometries again, without those that the fixes contradict.

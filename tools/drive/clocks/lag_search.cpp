@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/tools/drive/clocks/common_motion.hpp>
 #include <waymark/tools/drive/logs/time_series.hpp>
 
@@ -18,7 +19,6 @@ constexpr double kLeastScore = 12;  // e^12 against chance: thousands of alignme
 constexpr double kLeastLead = 5;    // over an alignment elsewhere
 constexpr double kElsewhere_s = 5;  // farther than the motion resembles itself
 constexpr double kSoundCorrelation = 0.5;
-constexpr double kNextReading_s = 5;  // a later one has no reading before it
 
 }  // namespace
 
@@ -58,25 +58,34 @@ LagSearch::LagSearch(const std::vector<OdometrySample>& odometry, const GnssMoti
   add(turns, first, turns_);
 }
 
+// Readings of a second: the motion changes no faster, and faster ones would repeat what they say.
 void LagSearch::add(const GnssMotion& motion, Stamp first, std::vector<Reading>& readings) const {
-  const std::size_t every = motion.stretches.size() / kMostReadings + 1;
-  for (std::size_t i = 0; i < motion.stretches.size(); i += every) {
-    const Stretch& stretch = motion.stretches[i];
-    readings.push_back(
-        {seconds_between(first, stretch.from), seconds_between(first, stretch.to), stretch.value});
-  }
+  constexpr double kApart_s = 0.9;
+  constexpr double kUsual = 2.5;
+  std::vector<const Stretch*> spaced;
+  for (const Stretch& stretch : motion.stretches)
+    if (spaced.empty() || seconds_between(spaced.back()->from, stretch.from) >= kApart_s)
+      spaced.push_back(&stretch);
+  const std::size_t every = spaced.size() / kMostReadings + 1;
+  std::vector<double> apart_s;
+  for (std::size_t i = every; i < spaced.size(); i += every)
+    apart_s.push_back(seconds_between(spaced[i - every]->from, spaced[i]->from));
+  const double longest_s = apart_s.empty() ? 0 : kUsual * upper_median(apart_s);
+  for (std::size_t i = 0; i < spaced.size(); i += every)
+    readings.push_back({seconds_between(first, spaced[i]->from), seconds_between(first, spaced[i]->to),
+                        spaced[i]->value, i > 0 && apart_s[i / every - 1] < longest_s});
 }
 
 double LagSearch::correlation(const Grid& grid, const std::vector<Reading>& readings, double late_s,
                               double& score) const {
   CommonMotion common;
-  double last_s = -kNextReading_s;
+  bool has_before = false;
   for (const Reading& reading : readings) {
     const double from_s = reading.from_s + late_s;
     const double to_s = reading.to_s + late_s;
-    if (from_s < 0 || to_s > length_s_ || silent_.mean(from_s, to_s) > 0) continue;
-    common.add(grid.mean(from_s, to_s), reading.value, from_s - last_s < kNextReading_s);
-    last_s = to_s;
+    const bool is_known = from_s >= 0 && to_s <= length_s_ && !(silent_.mean(from_s, to_s) > 0);
+    if (is_known) common.add(grid.mean(from_s, to_s), reading.value, has_before && reading.follows);
+    has_before = is_known;
   }
   if (common.size() < kLeastReadings) return -1;
   score += common.score();

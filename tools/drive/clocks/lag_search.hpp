@@ -44,7 +44,9 @@ class LagSearch {
     [[nodiscard]] double at(double time_s) const;
   };
   struct Reading {
-    double from_s, to_s, value;  ///< after the first sample of the odometry
+    double from_s, to_s;  ///< after the first sample of the odometry
+    double value;
+    bool follows;  ///< the reading before it in about the usual time
   };
 
   void add(const GnssMotion& motion, Stamp first, std::vector<Reading>& readings) const;

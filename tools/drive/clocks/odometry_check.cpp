@@ -201,7 +201,8 @@ OdometryCheck check_odometries(const PreparedDrive& drive, const std::vector<std
     const bool is_suspect =
         std::find(suspects.begin(), suspects.end(), drive.relative[i].name) != suspects.end();
     const auto other = std::find_if(verdicts.begin(), verdicts.end(), [&](const Verdict& verdict) {
-      return is_suspect ? !verdict.contradicts : stands_for(verdict, wrong);
+      return is_suspect ? !verdict.contradicts && 2 * verdict.covered >= wrong.covered
+                        : stands_for(verdict, wrong);
     });
     if (wrong.contradicts && other != verdicts.end()) {
       check.left_out.push_back(drive.relative[i].name);

@@ -31,7 +31,8 @@ struct OdometryCheck {
 /// Compares each of several odometries: its clock, the sign and the unit of its turns and distances. One in which
 /// these are wrong is to be left out, if another one shows by its own motion that it fits and covers nearly as many
 /// fixes.
-/// @param suspects names of odometries in which they were wrong before: they need no such proof
+/// @param suspects names of odometries in which they were wrong before: another one that covers half as many is
+/// enough
 [[nodiscard]] OdometryCheck check_odometries(const PreparedDrive& drive,
                                              const std::vector<std::string>& suspects = {});
 

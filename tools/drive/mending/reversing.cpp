@@ -67,23 +67,22 @@ std::vector<Complex> positions_of(std::span<const OdometrySample> odometry) {
   return positions;
 }
 
-/// Returns for each sample how many silences of the odometry were before it. How the vehicle turned in one is not
-/// known, so the frames of the odometry before and after it are two.
-std::vector<std::size_t> parts_of(std::span<const OdometrySample> odometry) {
-  constexpr double kSilence_s = 2;
-  const double silence_s = longest_silence_s(
-      series_of({odometry.begin(), odometry.end()}, &OdometrySample::speed_mps), kSilence_s);
-  std::vector<std::size_t> parts(odometry.size(), 0);
-  for (std::size_t i = 1; i < odometry.size(); ++i)
-    parts[i] = parts[i - 1] + (seconds_between(odometry[i - 1].stamp, odometry[i].stamp) > silence_s ? 1 : 0);
-  return parts;
-}
-
 /// Compares odometry and fixes.
 class Comparison {
  public:
   Comparison(std::span<const OdometrySample> odometry, std::span<const Fix> fixes)
       : odometry_(odometry), fixes_(fixes_for_motion(fixes)), positions_(positions_of(odometry)) {}
+
+  /// Tells whether the fixes about a time are as near to each other as they claim.
+  [[nodiscard]] bool stays(Stamp from, Stamp to) const {
+    const auto after = std::lower_bound(fixes_.begin(), fixes_.end(), to,
+                                        [](const Fix& fix, Stamp stamp) { return fix.stamp < stamp; });
+    const auto later = std::upper_bound(fixes_.begin(), fixes_.end(), from,
+                                        [](Stamp stamp, const Fix& fix) { return stamp < fix.stamp; });
+    if (after == fixes_.end() || later == fixes_.begin()) return false;
+    const Fix& before = *std::prev(later);
+    return (after->position - before.position).norm() <= after->accuracy_m() + before.accuracy_m();
+  }
 
   [[nodiscard]] double length_m(std::size_t first, std::size_t last) const {
     double length = 0;
@@ -151,9 +150,27 @@ class Comparison {
   std::vector<Complex> positions_;
 };
 
+/// Returns for each sample how many silences of the odometry were before it in which the vehicle may have moved.
+/// How it turned then is not known, so the frames of the odometry before and after are two.
+std::vector<std::size_t> parts_of(std::span<const OdometrySample> odometry, const Comparison& comparison) {
+  constexpr double kSilence_s = 2;
+  const double silence_s = longest_silence_s(
+      series_of({odometry.begin(), odometry.end()}, &OdometrySample::speed_mps), kSilence_s);
+  std::vector<std::size_t> parts(odometry.size(), 0);
+  for (std::size_t i = 1; i < odometry.size(); ++i) {
+    const OdometrySample& before = odometry[i - 1];
+    const OdometrySample& after = odometry[i];
+    const bool stands =
+        std::max(before.speed_mps, after.speed_mps) < kStands && comparison.stays(before.stamp, after.stamp);
+    const bool is_silent = seconds_between(before.stamp, after.stamp) > silence_s;
+    parts[i] = parts[i - 1] + (is_silent && !stands ? 1 : 0);
+  }
+  return parts;
+}
+
 std::vector<Way> ways_of(std::span<const OdometrySample> odometry, const Comparison& comparison) {
   std::vector<Way> ways;
-  const std::vector<std::size_t> parts = parts_of(odometry);
+  const std::vector<std::size_t> parts = parts_of(odometry, comparison);
   for (std::size_t first = 0; first < odometry.size(); ++first) {
     if (odometry[first].speed_mps < kStands) continue;
     std::size_t last = first;

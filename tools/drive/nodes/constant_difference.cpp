@@ -50,6 +50,9 @@ struct Differences {
   std::vector<double> second_claims_m;
   Stamp from{};
   Stamp to{};
+
+  /// How often lasting errors are new.
+  [[nodiscard]] double minutes() const { return seconds_between(from, to) / 60; }
 };
 
 using Pairs = std::map<std::pair<int, int>, Differences>;
@@ -97,6 +100,7 @@ Middle middle_of(const std::array<std::vector<double>, 2>& axes) {
 }
 
 constexpr std::size_t kFewestPairs = 20;
+constexpr double kFewestMinutes = 3;  // fewer tell neither a difference nor agreement
 
 /// Returns Student's quantile that is 3 for a Gaussian, by Fisher and Cornish's expansion.
 double three_sigmas(double degrees_of_freedom) {
@@ -107,10 +111,7 @@ double three_sigmas(double degrees_of_freedom) {
 /// Tells whether a median is more than what both claim and what it is known to.
 bool counts(const Middle& middle, const Differences& all, double claims_m) {
   constexpr double kClaims = 2;
-  constexpr double kErrorsLast_s = 60;
-  constexpr double kFewest = 3;
-  const double independent = seconds_between(all.from, all.to) / kErrorsLast_s;
-  if (independent < kFewest) return false;
+  const double independent = all.minutes();
   const double sigma = middle.spread / std::sqrt(independent);
   return middle.value.norm() >= std::max(kClaims * claims_m, three_sigmas(independent - 1) * sigma);
 }
@@ -195,7 +196,7 @@ std::string explanation(const ConstantDifference& difference) {
 ComparedReceivers compare_receivers(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> poses) {
   ComparedReceivers compared;
   for (const auto& [sources, all] : pairs_of(fixes, poses)) {
-    if (all.first_claims_m.size() < kFewestPairs) continue;
+    if (all.first_claims_m.size() < kFewestPairs || all.minutes() < kFewestMinutes) continue;
     if (const auto difference = judged(sources, all))
       compared.differ.push_back(*difference);
     else

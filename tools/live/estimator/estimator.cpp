@@ -156,7 +156,10 @@ void Estimator::work() {
   }
   while (std::optional<Sample> sample = intake_.next()) {
     so_far_.take(*sample);
-    if (is_left_out(*sample)) continue;
+    if (is_left_out(*sample)) {
+      learn(std::max(now_, stamp_of(*sample)));  // the others may be silent for good
+      continue;
+    }
     if (const auto* odometry = std::get_if<OdometrySample>(&*sample)) {
       hear(0, *odometry);
     } else if (const auto* further = std::get_if<FurtherOdometry>(&*sample)) {
@@ -165,7 +168,7 @@ void Estimator::work() {
       pending_.push_back(std::move(*sample));
       if (!reckoning_.empty() && stamp_of(pending_.back()) <= now_) use_pending();
     }
-    learn();
+    learn(now_);
   }
 }
 

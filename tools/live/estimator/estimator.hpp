@@ -97,8 +97,8 @@ class Estimator {
   void drop();
   void forget_motion();
   [[nodiscard]] bool is_left_out(const Sample& sample);
-  void learn();
-  void begin_search();
+  void learn(Stamp now);
+  void begin_search(Stamp now);
   void adopt(Learned learned);
   void tell(const Lesson& lesson);
   void leave_out(const std::vector<std::string>& sources);

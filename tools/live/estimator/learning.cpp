@@ -8,16 +8,17 @@
 
 namespace waymark::live {
 
-void Estimator::learn() {
-  if (std::optional<Learned> learned = learner_.result(now_)) adopt(std::move(*learned));
-  if (window_ && learner_.is_due(now_, so_far_.length_s())) begin_search();
+void Estimator::learn(Stamp now) {
+  if (std::optional<Learned> learned = learner_.result(now)) adopt(std::move(*learned));
+  const bool may_search = window_ || !left_out_.empty();
+  if (may_search && learner_.is_due(now, so_far_.length_s())) begin_search(now);
 }
 
-void Estimator::begin_search() {
-  const auto task = std::make_shared<const SearchTask>(SearchTask{so_far_, description_, stated_, setup_,
-                                                                  left_out_, *frame_, window_->inputs(),
-                                                                  window_->oldest(), says_.counts.resets});
-  learner_.begin(now_, so_far_.length_s(),
+void Estimator::begin_search(Stamp now) {
+  const auto task = std::make_shared<const SearchTask>(SearchTask{
+      so_far_, description_, stated_, setup_, left_out_, *frame_,
+      window_ ? window_->inputs() : WindowInputs(), window_ ? window_->oldest() : now, says_.counts.resets});
+  learner_.begin(now, so_far_.length_s(),
                  [task, &registry = registry_](const std::function<void()>& between) {
                    return search(*task, registry, between);
                  });
@@ -60,8 +61,10 @@ void Estimator::leave_out(const std::vector<std::string>& sources) {
   for (const std::string& source : sources)
     if (lacks(left_out_, source)) say("left_out", source, "the others contradict it: it is not used");
   for (const std::string& source : left_out_)
-    if (lacks(sources, source)) say("left_out", source, "it fits the others: it is used again");
+    if (lacks(sources, source))
+      say("left_out", source, "it is no longer shown to be wrong: it is used again");
   left_out_ = sources;
+  std::erase_if(pending_, [&](const Sample& sample) { return !lacks(left_out_, source_of(sample)); });
   if (!window_ || !window_->inputs().has_nodes_of(unused_sources(description_, left_out_))) return;
   reset("reset", "the nodes are from an odometry that is left out now");
   forget_motion();

@@ -27,7 +27,7 @@ Learned search(const SearchTask& task, const TypeRegistry& registry, const std::
   const bool has_noise = !lesson.noise.parameters.empty();
   if (!lesson.failure.empty() || (!has_noise && lesson.left_out == task.left_out)) return learned;
   const UnusedSources unused = unused_sources(task.description, lesson.left_out);
-  if (task.inputs.has_nodes_of(unused)) return learned;
+  if (task.inputs.nodes().empty() || task.inputs.has_nodes_of(unused)) return learned;
   WindowInputs inputs = task.inputs;
   inputs.remove(unused);
   learned.window = make_window(task.description, has_noise ? lesson.setup : task.setup, task.frame,

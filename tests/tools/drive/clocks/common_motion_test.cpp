@@ -1,14 +1,19 @@
 // Whether two series are of one motion: what resembles each other by chance is not taken for it.
 #include <cmath>
+#include <optional>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
 #include <waymark/tools/drive/clocks/common_motion.hpp>
+#include <waymark/tools/drive/clocks/lag_search.hpp>
 
 namespace common_motion_test {
 
-using waymark::drive::CommonMotion;
+using namespace waymark;
+using namespace waymark::drive;
 
 namespace {
 
@@ -81,6 +86,24 @@ TEST_CASE("common motion: an opposite one, a constant one and none at all do not
   CHECK(opposite.score() == 0);
   CHECK(opposite.correlation() == Approx(-1));
   CHECK(constant.score() == 0);
+}
+
+TEST_CASE("common motion: an offset is found in hours of readings, of which some are taken, and at 10 Hz") {
+  const auto [seconds, interval_s] = GENERATE(std::pair{12000, 1.0}, std::pair{300, 0.1});
+  constexpr double kLate_s = 5;
+  Walk walk(3);
+  std::vector<OdometrySample> odometry;
+  GnssMotion speeds{"speed", {}};
+  double speed = 20;
+  for (int i = 0; i * interval_s < seconds; ++i) {
+    const Stamp stamp = Stamp::from_seconds(i * interval_s);
+    speed = std::abs(20 + walk.next());
+    odometry.push_back({stamp.later(kLate_s), speed, 0});
+    speeds.stretches.push_back({stamp, stamp.later(interval_s), speed + walk.noise(0.05)});
+  }
+  const std::optional<Lag> lag = LagSearch(odometry, speeds, {}).find(0);
+  REQUIRE(lag);
+  CHECK(lag->late_s == Approx(kLate_s).margin(0.5));
 }
 
 }  // namespace common_motion_test

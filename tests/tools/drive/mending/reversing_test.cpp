@@ -83,6 +83,12 @@ TEST_CASE("reversing: a turn while the odometry was silent is no drive backwards
   CHECK(find_reversing(made.odometry, made.fixes).empty());
 }
 
+TEST_CASE("reversing: wheels that say nothing at rest are still one odometry") {
+  WindingScene made = scene(2);
+  std::erase_if(made.odometry, [](const OdometrySample& sample) { return sample.speed_mps == 0; });
+  CHECK(find_reversing(made.odometry, made.fixes).size() == 1);
+}
+
 TEST_CASE("reversing: odometry with a sign is believed") {
   WindingScene made = scene(2);
   made.odometry[3].speed_mps = -0.01;

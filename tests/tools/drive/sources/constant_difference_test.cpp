@@ -87,6 +87,9 @@ TEST_CASE("constant difference: two minutes do not tell errors that last from a 
   };
   CHECK_FALSE(differs_after(2));
   CHECK(differs_after(8));
+  // Nor do they agree, which would be a voice against a third one.
+  CHECK(
+      compare_receivers(std::span(scene.fixes).first(240), std::span(scene.poses).first(240)).agree.empty());
 }
 
 TEST_CASE("constant difference: a straight way does not tell an antenna from a datum") {

@@ -1,6 +1,7 @@
 #include <waymark/tools/live/estimator/window/window_inputs.hpp>
 
 #include <algorithm>
+#include <iterator>
 
 namespace waymark::live {
 namespace {
@@ -46,7 +47,8 @@ void WindowInputs::remove(const UnusedSources& unused) {
 }
 
 bool WindowInputs::has_nodes_of(const UnusedSources& unused) const {
-  return std::any_of(nodes_.begin(), nodes_.end(), [&](const Numbered<NodeInput>& node) {
+  if (nodes_.empty()) return false;
+  return std::any_of(std::next(nodes_.begin()), nodes_.end(), [&](const Numbered<NodeInput>& node) {
     return !node.input.interval.bridged && unused.odometries.contains(node.input.giver);
   });
 }
