@@ -90,15 +90,13 @@ void refuse_wrong_clock(const DriveLogs& logs, const DriveDescription& descripti
 /// Prepares a drive of several odometries again, without those that the fixes contradict.
 PreparedDrive without_contradicted(PreparedDrive drive, const DriveLogs& logs,
                                    const DriveDescription& description,
-                                   const std::vector<std::string>& suspects) {
+                                   const std::set<std::string>& suspects) {
   const OdometryCheck check = check_odometries(drive, suspects);
   if (!check.left_out.empty()) {
     DriveLogs fewer = logs;
     DriveDescription rest = description;
     for (std::size_t i = rest.odometry.size(); i-- > 0;) {
-      if (std::find(check.left_out.begin(), check.left_out.end(), rest.odometry[i].name) ==
-          check.left_out.end())
-        continue;
+      if (!check.left_out.contains(rest.odometry[i].name)) continue;
       rest.odometry.erase(rest.odometry.begin() + static_cast<std::ptrdiff_t>(i));
       fewer.odometry.erase(fewer.odometry.begin() + static_cast<std::ptrdiff_t>(i));
     }
@@ -136,7 +134,7 @@ LoggedMotion logged_motion(const DriveLogs& logs, const DriveDescription& descri
 }
 
 PreparedDrive prepare_on_one_clock(const DriveLogs& logs, const DriveDescription& description,
-                                   const std::vector<std::string>& suspects) {
+                                   const std::set<std::string>& suspects) {
   PreparedDrive drive;
   try {
     drive = prepare_drive(logs, description);

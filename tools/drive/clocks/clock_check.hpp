@@ -2,6 +2,7 @@
 /// stamps belong together.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace waymark::drive {
 /// @throws InputError what prepare_drive throws; and if most fixes lie outside the odometry and their motion
 /// fits elsewhere, or nowhere: it names the offset and the remedy
 [[nodiscard]] PreparedDrive prepare_on_one_clock(const DriveLogs& logs, const DriveDescription& description,
-                                                 const std::vector<std::string>& suspects = {});
+                                                 const std::set<std::string>& suspects = {});
 
 /// All odometries and the fixes of all receivers, less their stated delays: nothing is cut to the time of the
 /// other.

@@ -190,7 +190,7 @@ std::string clock_warning(const std::string& odometry, const ClockOffset& offset
                      offset_in_words(offset), offset.correlation, cure);
 }
 
-OdometryCheck check_odometries(const PreparedDrive& drive, const std::vector<std::string>& suspects) {
+OdometryCheck check_odometries(const PreparedDrive& drive, const std::set<std::string>& suspects) {
   std::vector<Fix> fixes = drive.fixes;
   std::erase_if(fixes, [](const Fix& fix) { return fix.status == FixStatus::withheld; });
   std::vector<Verdict> verdicts;
@@ -198,14 +198,13 @@ OdometryCheck check_odometries(const PreparedDrive& drive, const std::vector<std
   OdometryCheck check;
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
     Verdict& wrong = verdicts[i];
-    const bool is_suspect =
-        std::find(suspects.begin(), suspects.end(), drive.relative[i].name) != suspects.end();
+    const bool is_suspect = suspects.contains(drive.relative[i].name);
     const auto other = std::find_if(verdicts.begin(), verdicts.end(), [&](const Verdict& verdict) {
       return is_suspect ? !verdict.contradicts && 2 * verdict.covered >= wrong.covered
                         : stands_for(verdict, wrong);
     });
     if (wrong.contradicts && other != verdicts.end()) {
-      check.left_out.push_back(drive.relative[i].name);
+      check.left_out.insert(drive.relative[i].name);
       const auto place = static_cast<std::size_t>(other - verdicts.begin());
       wrong.sentences.back() += fmt::format(". It is left out; {} fits", drive.relative[place].name);
     }

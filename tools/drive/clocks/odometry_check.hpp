@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,7 @@ namespace waymark::drive {
 /// What the fixes say against the odometries of a drive.
 struct OdometryCheck {
   std::vector<std::string> warnings;
-  std::vector<std::string> left_out;  ///< names
+  std::set<std::string> left_out;  ///< names
 };
 
 /// Compares each of several odometries: its clock, the sign and the unit of its turns and distances. One in which
@@ -34,6 +35,6 @@ struct OdometryCheck {
 /// @param suspects names of odometries in which they were wrong before: another one that covers half as many is
 /// enough
 [[nodiscard]] OdometryCheck check_odometries(const PreparedDrive& drive,
-                                             const std::vector<std::string>& suspects = {});
+                                             const std::set<std::string>& suspects = {});
 
 }  // namespace waymark::drive

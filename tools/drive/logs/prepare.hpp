@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -71,7 +72,7 @@ struct PrepareReport {
   std::vector<std::string> notes;
   /// sentences about readings that contradict each other
   std::vector<std::string> warnings;
-  std::vector<std::string> left_out;  ///< odometries that the fixes contradict: names
+  std::set<std::string> left_out;  ///< names of odometries that the fixes contradict
   std::vector<std::string> corrupt_examples;
 };
 

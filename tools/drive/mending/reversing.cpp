@@ -75,8 +75,7 @@ class Comparison {
 
   /// Tells whether the fixes about a time are as near to each other as they claim.
   [[nodiscard]] bool stays(Stamp from, Stamp to) const {
-    const auto after = std::lower_bound(fixes_.begin(), fixes_.end(), to,
-                                        [](const Fix& fix, Stamp stamp) { return fix.stamp < stamp; });
+    const auto after = first_since(to);
     const auto later = std::upper_bound(fixes_.begin(), fixes_.end(), from,
                                         [](Stamp stamp, const Fix& fix) { return stamp < fix.stamp; });
     if (after == fixes_.end() || later == fixes_.begin()) return false;
@@ -94,9 +93,8 @@ class Comparison {
   [[nodiscard]] Alignment alignment(Stamp from, Stamp to) const {
     constexpr std::size_t kFewestFixes = 3;
     constexpr double kLargestFactor = 1.6;
-    const auto is_earlier = [](const Fix& fix, Stamp stamp) { return fix.stamp < stamp; };
-    const auto begin = std::lower_bound(fixes_.begin(), fixes_.end(), from, is_earlier);
-    const auto end = std::lower_bound(begin, fixes_.end(), to, is_earlier);
+    const auto begin = first_since(from);
+    const auto end = first_since(to);
     const std::span<const Fix> during(begin, end);
     if (during.size() < kFewestFixes) return {};
     Complex middle_of_fixes;
@@ -131,6 +129,10 @@ class Comparison {
   }
 
  private:
+  [[nodiscard]] std::vector<Fix>::const_iterator first_since(Stamp moment) const {
+    return std::lower_bound(fixes_.begin(), fixes_.end(), moment,
+                            [](const Fix& fix, Stamp stamp) { return fix.stamp < stamp; });
+  }
   static Complex place_of(const Fix& fix) { return {fix.position.x(), fix.position.y()}; }
 
   [[nodiscard]] Complex position_at(Stamp stamp) const {

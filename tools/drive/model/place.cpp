@@ -90,7 +90,7 @@ bool leave_out_outvoted(std::span<const std::size_t> voices, PlacedDrive& placed
   const std::vector<int> wrong = outvoted(compared, voices);
   for (const int source : wrong) {
     reject_all_of(source, placed);
-    placed.left_out.push_back(receiver_name(placed, source));
+    placed.left_out.insert(receiver_name(placed, source));
   }
   for (const ConstantDifference& difference : compared.differ) {
     std::string end = consequence_of(difference);

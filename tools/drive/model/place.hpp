@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,7 @@ struct PlacedDrive {
   double standstill_mps = 0;                 ///< of the odometry model
   double gap_noise_factor = 1;               ///< for the odometry model, from PreparedDrive::timeline
   std::vector<std::string> warnings;         ///< of the preparation; suspicious units, signs, jumps
-  std::vector<std::string> left_out{};       ///< names of sources that others contradict
+  std::set<std::string> left_out{};          ///< names of sources that others contradict
   std::optional<FirstPose> first_pose{};     ///< as PreparedDrive::first_pose
   /// what plugins may know of the whole drive; null: nothing
   std::shared_ptr<const DriveSurroundings> surroundings{};

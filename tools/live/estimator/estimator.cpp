@@ -187,7 +187,7 @@ void Estimator::forget_motion() {
 bool Estimator::is_left_out(const Sample& sample) {
   if (left_out_.empty()) return false;
   const std::string source = source_of(sample);
-  if (std::find(left_out_.begin(), left_out_.end(), source) == left_out_.end()) return false;
+  if (!left_out_.contains(source)) return false;
   says_.counts.refused[source + ": left out"] += 1;
   return true;
 }

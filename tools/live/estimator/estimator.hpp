@@ -12,6 +12,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -101,7 +102,7 @@ class Estimator {
   void begin_search(Stamp now);
   void adopt(Learned learned);
   void tell(const Lesson& lesson);
-  void leave_out(const std::vector<std::string>& sources);
+  void leave_out(const std::set<std::string>& sources);
   void take_over(Learned learned);
   [[nodiscard]] Eigen::Matrix3d covariance() const;
   void reset(const std::string& kind, const std::string& text);
@@ -127,7 +128,7 @@ class Estimator {
   ReceiverComparison receivers_;
   DriveSoFar so_far_;
   Learner learner_;
-  std::vector<std::string> left_out_;                 // sources that the others contradict, as learned
+  std::set<std::string> left_out_;                    // sources that the others contradict, as learned
   drive::NoiseEstimate noise_;                        // the last that was learned
   Eigen::Matrix3d spread_ = Eigen::Matrix3d::Zero();  // of the newest pose: noise_spread.hpp
   std::unique_ptr<Window> window_;

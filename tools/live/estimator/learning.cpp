@@ -54,17 +54,14 @@ void Estimator::tell(const Lesson& lesson) {
 }
 
 // A source that is left out is judged again by the next lesson, and may come back.
-void Estimator::leave_out(const std::vector<std::string>& sources) {
-  const auto lacks = [](const std::vector<std::string>& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) == names.end();
-  };
+void Estimator::leave_out(const std::set<std::string>& sources) {
   for (const std::string& source : sources)
-    if (lacks(left_out_, source)) say("left_out", source, "the others contradict it: it is not used");
+    if (!left_out_.contains(source)) say("left_out", source, "the others contradict it: it is not used");
   for (const std::string& source : left_out_)
-    if (lacks(sources, source))
+    if (!sources.contains(source))
       say("left_out", source, "it is no longer shown to be wrong: it is used again");
   left_out_ = sources;
-  std::erase_if(pending_, [&](const Sample& sample) { return !lacks(left_out_, source_of(sample)); });
+  std::erase_if(pending_, [&](const Sample& sample) { return left_out_.contains(source_of(sample)); });
   if (!window_ || !window_->inputs().has_nodes_of(unused_sources(description_, left_out_))) return;
   reset("reset", "the nodes are from an odometry that is left out now");
   forget_motion();

@@ -39,7 +39,7 @@ Eigen::Matrix3d mean_of(const std::vector<drive::PoseSpread>& spread) {
 }  // namespace
 
 Lesson learn(const DriveSoFar& so_far, const drive::DriveDescription& description,
-             const drive::FusionSettings& stated, const std::vector<std::string>& suspects,
+             const drive::FusionSettings& stated, const std::set<std::string>& suspects,
              const TypeRegistry& registry, const std::function<void()>& between) {
   Lesson lesson;
   lesson.length_s = so_far.length_s();

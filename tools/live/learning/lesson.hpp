@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,14 +23,15 @@ struct Lesson {
   /// what is added to the covariance of a pose because the noise is not known well (noise_spread.hpp)
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   std::vector<std::string> warnings;
-  std::vector<std::string> left_out;  ///< names of sources that the others contradict
-  std::string failure;                ///< why the drive so far tells nothing; empty: it does
+  std::set<std::string> left_out;  ///< names of sources that the others contradict
+  std::string failure;             ///< why the drive so far tells nothing; empty: it does
 };
 
 /// @param description from described_so_far() @param stated settings of the drive, without what was learned
-/// @param suspects sources that were left out of an earlier part of the drive @param between called between the steps of the search; what it throws ends it
+/// @param suspects sources that were left out of an earlier part of the drive
+/// @param between called between the steps of the search; what it throws ends it
 [[nodiscard]] Lesson learn(const DriveSoFar& so_far, const drive::DriveDescription& description,
-                           const drive::FusionSettings& stated, const std::vector<std::string>& suspects,
+                           const drive::FusionSettings& stated, const std::set<std::string>& suspects,
                            const TypeRegistry& registry, const std::function<void()>& between);
 
 /// Returns "white_sigma 1.2 m, heading_variance_per_s 3.1e-07 rad^2/s": the parameters that the drive shows.

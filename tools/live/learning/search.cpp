@@ -1,19 +1,13 @@
 #include <waymark/tools/live/learning/search.hpp>
 
-#include <algorithm>
-
 namespace waymark::live {
 
-UnusedSources unused_sources(const drive::DriveDescription& description,
-                             const std::vector<std::string>& names) {
-  const auto is_named = [&](const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
+UnusedSources unused_sources(const drive::DriveDescription& description, const std::set<std::string>& names) {
   UnusedSources unused;
   for (std::size_t source = 0; source < description.odometry.size(); ++source)
-    if (is_named(description.odometry[source].name)) unused.odometries.insert(source);
+    if (names.contains(description.odometry[source].name)) unused.odometries.insert(source);
   for (std::size_t source = 0; source < description.gnss.size(); ++source)
-    if (is_named(description.gnss[source].name)) unused.receivers.insert(static_cast<int>(source));
+    if (names.contains(description.gnss[source].name)) unused.receivers.insert(static_cast<int>(source));
   return unused;
 }
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
-#include <vector>
 
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/tools/live/estimator/window/window.hpp>
@@ -19,9 +19,9 @@ namespace waymark::live {
 struct SearchTask {
   DriveSoFar so_far;
   drive::DriveDescription description;
-  drive::FusionSettings stated;       ///< without what was learned before
-  FusionSetup setup;                  ///< of the present window
-  std::vector<std::string> left_out;  ///< sources that are not used at present
+  drive::FusionSettings stated;    ///< without what was learned before
+  FusionSetup setup;               ///< of the present window
+  std::set<std::string> left_out;  ///< sources that are not used at present
   Frame frame;
   WindowInputs inputs;
   Stamp oldest;              ///< pose of the window
@@ -39,7 +39,7 @@ struct Learned {
 
 /// @param names of sources; those that the description does not have are passed over
 [[nodiscard]] UnusedSources unused_sources(const drive::DriveDescription& description,
-                                           const std::vector<std::string>& names);
+                                           const std::set<std::string>& names);
 
 /// @param registry must outlive the result @param between as for learn()
 [[nodiscard]] Learned search(const SearchTask& task, const TypeRegistry& registry,
