@@ -19,6 +19,7 @@ import subprocess
 
 GPS_EPOCH = 315964800
 LEAP_SECONDS = 18
+BAD_INPUT = 3  # exit code
 
 
 def read_csv(path):
@@ -135,6 +136,12 @@ def reverse(folder, rows, length_s):
     return True
 
 
+def read_as(rows, late_s=0, speed=1, yaw_rate=1):
+    for row in rows:
+        row[0], row[1], row[2] = row[0] + late_s, row[1] * speed, row[2] * yaw_rate
+    return True
+
+
 FAULTS = {
     "sound": lambda folder, rows: True,
     "speed repeats": lambda folder, rows: repeat(rows, [1]),
@@ -144,6 +151,13 @@ FAULTS = {
     "six slips": lambda folder, rows: slip(rows, [2.5, 0.05] * 3),
     "reverse 20 s": lambda folder, rows: reverse(folder, rows, 20),
     "reverse 60 s": lambda folder, rows: reverse(folder, rows, 60),
+    "km/h as m/s": lambda folder, rows: read_as(rows, speed=3.6),
+    "m/s as km/h": lambda folder, rows: read_as(rows, speed=1 / 3.6),
+    "deg/s as rad/s": lambda folder, rows: read_as(rows, yaw_rate=math.degrees(1)),
+    "rad/s as deg/s": lambda folder, rows: read_as(rows, yaw_rate=math.radians(1)),
+    "clockwise": lambda folder, rows: read_as(rows, yaw_rate=-1),
+    "3 s late": lambda folder, rows: read_as(rows, late_s=3),
+    "18 s late": lambda folder, rows: read_as(rows, late_s=18),
 }
 
 
@@ -162,8 +176,12 @@ def quietly(command):
 
 
 def fused(program, folder):
-    """Returns (RMSE, inside 95 % [%])."""
-    quietly([program, "run", "-q", folder + "/drive.yaml", "-o", folder + "/out"])
+    """Returns (RMSE, inside 95 % [%]); None for a drive that is refused."""
+    command = [program, "run", "-q", folder + "/drive.yaml", "-o", folder + "/out"]
+    run = subprocess.run(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    if run.returncode == BAD_INPUT:
+        return None
+    run.check_returncode()
     with open(folder + "/out/metrics.json") as file:
         truth = json.load(file)["evaluations"][0]["truth"]
     return truth["fused"]["position"]["rmse_m"], 100 * truth["consistency"]["coverage_95"]
@@ -204,11 +222,12 @@ def main():
     for fault in given.faults.split(","):
         cells = []
         for preset, seed in drives:
-            folder = os.path.join(given.folder, "_".join([fault.replace(" ", "_"), preset, seed]))
+            folder = os.path.join(given.folder, "_".join([fault.translate(str.maketrans(" /", "__")), preset, seed]))
             if not drive_with(given.program, folder, fault, preset, seed):
                 cells.append("-")
                 continue
-            cells.append("%.2f (%.0f)" % (lived if given.live else fused)(given.program, folder))
+            errors = (lived if given.live else fused)(given.program, folder)
+            cells.append("%.2f (%.0f)" % errors if errors else "refused")
         print("%-18s" % fault + "".join("%15s" % cell for cell in cells), flush=True)
 
 

@@ -45,7 +45,7 @@ TEST_CASE(
     for (const auto& [name, value] : type.noise_search.options) {
       const Options alone = {{name, value}};
       const auto option = std::find_if(type.options.begin(), type.options.end(),
-                                       [&](const OptionInfo& known) { return known.name == name; });
+                                       [&of = name](const OptionInfo& known) { return known.name == of; });
       REQUIRE(option != type.options.end());
       CHECK_NOTHROW(CheckedOptions(type.name, alone, {&*option, 1}));
     }

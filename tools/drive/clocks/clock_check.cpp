@@ -1,8 +1,10 @@
 #include <waymark/tools/drive/clocks/clock_check.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -10,6 +12,7 @@
 #include <waymark/tools/drive/clocks/clock_sync.hpp>
 #include <waymark/tools/drive/clocks/odometry_check.hpp>
 #include <waymark/tools/drive/clocks/offset_names.hpp>
+#include <waymark/tools/drive/clocks/synchronise.hpp>
 #include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
@@ -17,9 +20,15 @@
 namespace waymark::drive {
 namespace {
 
+/// Fixes may be late by less than this; more are two clocks.
+constexpr double kOneClock_s = 2;
+
+std::string statement(const ClockOffset& offset) {
+  return fmt::format("state 'time: {{offset: {:.2f}}}' for the logs of 'odometry'", -offset.late_s);
+}
+
 std::string remedy(const ClockOffset& offset) {
-  return fmt::format("--sync applies it; or state 'time: {{offset: {:.2f}}}' for the logs of 'odometry'",
-                     -offset.late_s);
+  return "--sync applies it; or " + statement(offset);
 }
 
 /// Returns the offset at which all that is logged fits best. Empty: it fits nowhere.
@@ -83,7 +92,6 @@ void refuse_wrong_clock(const DriveLogs& logs, const DriveDescription& descripti
   const std::optional<LoggedMotion> motion = whole_motion(logs, description);
   if (!motion || 2 * count_within(*motion) >= motion->fixes.size()) return;
   const std::optional<ClockOffset> offset = logged_offset(*motion);
-  constexpr double kOneClock_s = 2;
   if (offset && std::abs(offset->late_s) > kOneClock_s) refuse(*motion, offset, description);
 }
 
@@ -105,6 +113,24 @@ PreparedDrive without_contradicted(PreparedDrive drive, const DriveLogs& logs,
   }
   std::vector<std::string>& warnings = drive.report.warnings;
   warnings.insert(warnings.end(), check.warnings.begin(), check.warnings.end());
+  return drive;
+}
+
+/// Compares the clock of the only odometry with that of the fixes.
+PreparedDrive with_clock_told(PreparedDrive drive, const DriveLogs& logs, DriveDescription description,
+                              ClocksApart treatment) {
+  const std::optional<ClockOffset> offset = offset_shown(drive.odometry, drive.fixes);
+  if (!offset) return drive;
+  const bool moves = treatment == ClocksApart::move && std::abs(offset->late_s) > kOneClock_s;
+  if (moves) {
+    OdometryConfig& odometry = config_of(drive.odometry_name, description);
+    odometry.speed_delay_s += offset->late_s;
+    odometry.yaw_rate_delay_s += offset->late_s;
+    drive = prepare_drive(logs, description);
+  }
+  drive.report.warnings.push_back(
+      clock_warning("the odometry", *offset,
+                    moves ? "its stamps are moved by that; " + statement(*offset) : remedy(*offset)));
   return drive;
 }
 
@@ -134,7 +160,7 @@ LoggedMotion logged_motion(const DriveLogs& logs, const DriveDescription& descri
 }
 
 PreparedDrive prepare_on_one_clock(const DriveLogs& logs, const DriveDescription& description,
-                                   const std::set<std::string>& suspects) {
+                                   ClocksApart treatment, const std::set<std::string>& suspects) {
   PreparedDrive drive;
   try {
     drive = prepare_drive(logs, description);
@@ -147,9 +173,7 @@ PreparedDrive prepare_on_one_clock(const DriveLogs& logs, const DriveDescription
   if (report.fixes_outside_odometry > drive.fixes.size() + report.fixes_thinned)
     refuse_wrong_clock(logs, description);
   if (!drive.relative.empty()) return without_contradicted(std::move(drive), logs, description, suspects);
-  if (const std::optional<ClockOffset> offset = offset_shown(drive.odometry, drive.fixes))
-    drive.report.warnings.push_back(clock_warning("the odometry", *offset, remedy(*offset)));
-  return drive;
+  return with_clock_told(std::move(drive), logs, description, treatment);
 }
 
 }  // namespace waymark::drive

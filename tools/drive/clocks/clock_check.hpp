@@ -10,12 +10,20 @@
 
 namespace waymark::drive {
 
+/// What is done about the clock of the only odometry if it is more than two seconds apart from that of the
+/// fixes. Nearer, the fixes may be late (time_offset).
+enum class ClocksApart {
+  move,  ///< its stamps are moved to the clock of the fixes, and a warning tells it
+  tell   ///< a warning tells it: the stamps are those of a drive that goes on
+};
+
 /// prepare_drive(), and a warning if odometry and fixes fit at another offset of their clocks. Several odometries
 /// are compared one by one, and those that the fixes contradict are left out (odometry_check.hpp).
 /// @param suspects odometries that were left out of an earlier part of the drive
 /// @throws InputError what prepare_drive throws; and if most fixes lie outside the odometry and their motion
 /// fits elsewhere, or nowhere: it names the offset and the remedy
 [[nodiscard]] PreparedDrive prepare_on_one_clock(const DriveLogs& logs, const DriveDescription& description,
+                                                 ClocksApart treatment,
                                                  const std::set<std::string>& suspects = {});
 
 /// All odometries and the fixes of all receivers, less their stated delays: nothing is cut to the time of the

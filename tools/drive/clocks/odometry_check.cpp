@@ -9,7 +9,8 @@
 
 #include <waymark/tools/drive/clocks/lag_search.hpp>
 #include <waymark/tools/drive/clocks/offset_names.hpp>
-#include <waymark/tools/drive/nodes/plausibility.hpp>
+#include <waymark/tools/drive/comparison/misreading.hpp>
+#include <waymark/tools/drive/comparison/plausibility.hpp>
 #include <waymark/tools/drive/nodes/timeline.hpp>
 
 namespace waymark::drive {
@@ -131,6 +132,11 @@ void add_shape(const PreparedOdometry& source, const std::vector<Fix>& receiver,
   constexpr double kStands_mps = 0.01;
   const Timeline timeline = build_timeline(source.samples, receiver, {.gap_s = source.gap_s});
   const std::vector<Eigen::Vector3d> poses = dead_reckon(timeline, Eigen::Vector3d::Zero(), kStands_mps);
+  if (const auto misreading = find_misreading(timeline, receiver, kStands_mps, {})) {
+    verdict.sentences.push_back(source.name + ": " + misreading->sentence);
+    verdict.contradicts = true;
+    return;
+  }
   const Shape shape = compare_shapes(receiver, antenna_at_fixes(timeline, poses, receiver));
   for (const std::string& sentence : shape.sentences)
     verdict.sentences.push_back(source.name + ": " + sentence);

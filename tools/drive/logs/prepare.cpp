@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/comparison/agreement.hpp>
+#include <waymark/tools/drive/comparison/plausibility.hpp>
 #include <waymark/tools/drive/coordinates/coordinate_slips.hpp>
 #include <waymark/tools/drive/coordinates/frame_choice.hpp>
 #include <waymark/tools/drive/coordinates/projection.hpp>
@@ -21,8 +23,6 @@
 #include <waymark/tools/drive/mending/reversing.hpp>
 #include <waymark/tools/drive/mending/speed_leaps.hpp>
 #include <waymark/tools/drive/mending/standing.hpp>
-#include <waymark/tools/drive/nodes/agreement.hpp>
-#include <waymark/tools/drive/nodes/plausibility.hpp>
 #include <waymark/tools/drive/sensors/rough_fixes.hpp>
 #include <waymark/tools/drive/sensors/sensor_logs.hpp>
 

@@ -132,6 +132,12 @@ std::vector<formats::DocumentSource> document_sources(const PreparedDrive& drive
   return sources;
 }
 
+/// @throws InputError if the drive was read wrong
+void refuse_misreading(const PlacedDrive& placed) {
+  if (!placed.misreading) return;
+  throw InputError((placed.runs.empty() ? "" : placed.odometry_name + ": ") + placed.misreading->sentence);
+}
+
 /// Adapts the settings to the yaw rate of each relative source.
 void adapt(const PreparedDrive& drive, bool by_default, FusionSettings& decision,
            const TypeRegistry& registry) {
@@ -166,10 +172,15 @@ const PlacedDrive& Fusion::placed(const FusionSettings& settings) {
   return placed_.emplace_back(key, place_drive(drive_, *timeline_, settings, registry_)).second;
 }
 
-ModeledDrive Fusion::estimated(const FusionSettings& settings) {
-  ModeledDrive modeled;
+FusionSettings Fusion::decision_on(const FusionSettings& settings) const {
   FusionSettings decision = decided(settings, registry_);
   adapt(drive_, !settings.calibration, decision, registry_);
+  return decision;
+}
+
+ModeledDrive Fusion::estimated(const FusionSettings& settings) {
+  ModeledDrive modeled;
+  FusionSettings decision = decision_on(settings);
   modeled.placed = placed(decision);
   TimeOffsetSearch delays(modeled.placed, drive_.sensors, registry_, between_);
   const auto offsets = estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
@@ -181,6 +192,7 @@ ModeledDrive Fusion::estimated(const FusionSettings& settings) {
 }
 
 ModeledDrive Fusion::model(const FusionSettings& settings) {
+  refuse_misreading(placed(decision_on(settings)));
   ModeledDrive modeled = estimated(settings);
   BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);

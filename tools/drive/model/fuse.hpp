@@ -86,7 +86,9 @@ class Fusion {
   /// Does the steps before the graph: placing, delays and noise. The document is empty.
   /// @throws errors of the steps
   [[nodiscard]] ModeledDrive estimated(const FusionSettings& settings);
-  /// Does the steps up to the graph. @throws errors of the steps
+  /// Does the steps up to the graph.
+  /// @throws InputError if the odometry or the positions were read in a wrong unit or sense (Misreading);
+  /// errors of the steps
   [[nodiscard]] ModeledDrive model(const FusionSettings& settings);
   /// Does all steps. @throws errors of the steps
   [[nodiscard]] FusedDrive fuse(const FusionSettings& settings, const MinimizationWatch& watch = {});
@@ -102,6 +104,7 @@ class Fusion {
 
     friend bool operator==(const Key&, const Key&) = default;
   };
+  [[nodiscard]] FusionSettings decision_on(const FusionSettings& settings) const;
   [[nodiscard]] const PlacedDrive& placed(const FusionSettings& settings);
 
   const PreparedDrive& drive_;

@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
+#include <waymark/tools/drive/comparison/agreement.hpp>
+#include <waymark/tools/drive/comparison/constant_difference.hpp>
+#include <waymark/tools/drive/comparison/plausibility.hpp>
 #include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/model/start_search.hpp>
-#include <waymark/tools/drive/nodes/agreement.hpp>
-#include <waymark/tools/drive/nodes/constant_difference.hpp>
-#include <waymark/tools/drive/nodes/plausibility.hpp>
 
 namespace waymark::drive {
 
@@ -150,6 +150,35 @@ std::optional<GeodeticPoint> place_of(const PreparedDrive& drive) {
   return Projection(drive.frame).to_geodetic(drive.fixes.front().position);
 }
 
+/// Tells whether the prior of the scale reaches the factor that was found: then the calibration finds it too.
+bool is_expected(const Misreading& misreading, const FusionSettings& settings, const TypeRegistry& registry) {
+  constexpr const char* kPrior = "speed_scale_sigma";
+  constexpr double kReach = 3;  // sigmas
+  if (!misreading.speed_factor) return false;
+  const OdometryModelType& type = registry.odometry_model(settings.odometry_model);
+  if (!has_option(type.options, kPrior)) return false;
+  const CheckedOptions options(type.name, with_calibration(settings.odometry_options, settings, type.options),
+                               type.options);
+  return std::abs(1 / *misreading.speed_factor - 1) <= kReach * options.number(kPrior);
+}
+
+/// Tells what is suspicious about the odometry beside the fixes. What is read wrong explains everything else.
+void compare_with_fixes(const PreparedDrive& drive, std::span<const Eigen::Vector3d> antenna,
+                        const FusionSettings& settings, const TypeRegistry& registry, PlacedDrive& placed) {
+  const std::optional<GeodeticPoint> place = place_of(drive);
+  if (const std::optional<Misreading> found =
+          find_misreading(placed.timeline, placed.fixes, placed.standstill_mps, place)) {
+    if (is_expected(*found, for_relative(settings, placed.odometry_name), registry)) return;
+    placed.misreading = found;
+    placed.warnings.push_back(found->sentence);
+    return;
+  }
+  const std::string of_several = drive.relative.empty() ? std::string() : drive.odometry_name;
+  for (std::string& warning :
+       compare_odometry_with_fixes(placed.fixes, antenna, place, placed.receivers, of_several))
+    placed.warnings.push_back(std::move(warning));
+}
+
 }  // namespace
 
 PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, const FusionSettings& settings,
@@ -174,10 +203,7 @@ PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, co
       dead_reckon(timeline, Eigen::Vector3d::Zero(), placed.standstill_mps);
   const std::vector<Eigen::Vector3d> antenna = antenna_at_fixes(timeline, reckoned, placed.fixes);
   placed.warnings = drive.report.warnings;
-  const std::string of_several = drive.relative.empty() ? std::string() : drive.odometry_name;
-  for (std::string& warning :
-       compare_odometry_with_fixes(placed.fixes, antenna, place_of(drive), placed.receivers, of_several))
-    placed.warnings.push_back(std::move(warning));
+  compare_with_fixes(drive, antenna, settings, registry, placed);
   placed.gate = apply_gate(placed.fixes, antenna, gates_of(placed, settings, registry));
   require_accepted_fix(placed.gate);
   if (std::string warning = warning_of(placed.gate); !warning.empty())

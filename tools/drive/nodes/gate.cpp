@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/nodes/chords.hpp>
-#include <waymark/tools/drive/nodes/frozen_fixes.hpp>
-#include <waymark/tools/drive/nodes/jumps.hpp>
+#include <waymark/tools/drive/comparison/chords.hpp>
+#include <waymark/tools/drive/comparison/frozen_fixes.hpp>
+#include <waymark/tools/drive/comparison/jumps.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::drive {

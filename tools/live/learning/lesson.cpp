@@ -44,7 +44,8 @@ Lesson learn(const DriveSoFar& so_far, const drive::DriveDescription& descriptio
   Lesson lesson;
   lesson.length_s = so_far.length_s();
   try {
-    drive::PreparedDrive drive = drive::prepare_on_one_clock(so_far.logs(description), description, suspects);
+    drive::PreparedDrive drive = drive::prepare_on_one_clock(so_far.logs(description), description,
+                                                             drive::ClocksApart::tell, suspects);
     take_readings(so_far.readings(), registry, drive);
     drive::ModeledDrive modeled = drive::Fusion(drive, registry, between).estimated(stated);
     lesson.noise = noise_ahead(std::move(modeled.noise), lesson.length_s);

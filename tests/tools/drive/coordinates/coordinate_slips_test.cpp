@@ -4,8 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include <waymark/tools/drive/comparison/plausibility.hpp>
 #include <waymark/tools/drive/coordinates/coordinate_slips.hpp>
-#include <waymark/tools/drive/nodes/plausibility.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace coordinate_slips_test {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include <waymark/tools/drive/nodes/agreement.hpp>
+#include <waymark/tools/drive/comparison/agreement.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace agreement_test {

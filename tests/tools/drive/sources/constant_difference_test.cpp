@@ -6,7 +6,7 @@
 #include <random>
 #include <span>
 
-#include <waymark/tools/drive/nodes/constant_difference.hpp>
+#include <waymark/tools/drive/comparison/constant_difference.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace constant_difference_test {

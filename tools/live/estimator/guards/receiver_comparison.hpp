@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include <waymark/core/drive/sample.hpp>
-#include <waymark/tools/drive/nodes/constant_difference.hpp>
+#include <waymark/tools/drive/comparison/constant_difference.hpp>
 
 namespace waymark::live {
 

@@ -39,7 +39,7 @@ LoadedDrive load_drive_for(const drive::DriveFile& file, const DriveChoice& choi
     console.progress("comparing clocks");
     drive::synchronise(logs, description);
   }
-  loaded.drive = drive::prepare_on_one_clock(logs, description);
+  loaded.drive = drive::prepare_on_one_clock(logs, description, drive::ClocksApart::move);
   tell(loaded.drive.report, console);
   for (const drive::InputFile& input : loaded.drive.inputs) loaded.files.push_back(input.path);
   loaded.files.push_back(description.path);

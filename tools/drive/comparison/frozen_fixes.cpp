@@ -1,4 +1,4 @@
-#include <waymark/tools/drive/nodes/frozen_fixes.hpp>
+#include <waymark/tools/drive/comparison/frozen_fixes.hpp>
 
 #include <algorithm>
 #include <map>

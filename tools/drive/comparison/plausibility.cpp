@@ -4,11 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <waymark/tools/drive/comparison/chords.hpp>
+#include <waymark/tools/drive/comparison/frozen_fixes.hpp>
+#include <waymark/tools/drive/comparison/jumps.hpp>
+#include <waymark/tools/drive/comparison/plausibility.hpp>
 #include <waymark/tools/drive/coordinates/coordinate_slips.hpp>
-#include <waymark/tools/drive/nodes/chords.hpp>
-#include <waymark/tools/drive/nodes/frozen_fixes.hpp>
-#include <waymark/tools/drive/nodes/jumps.hpp>
-#include <waymark/tools/drive/nodes/plausibility.hpp>
 
 namespace waymark::drive {
 namespace {

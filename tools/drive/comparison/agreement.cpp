@@ -1,4 +1,4 @@
-#include <waymark/tools/drive/nodes/agreement.hpp>
+#include <waymark/tools/drive/comparison/agreement.hpp>
 
 #include <algorithm>
 #include <array>
@@ -16,10 +16,10 @@ namespace waymark::drive {
 namespace {
 
 constexpr double kWindow_s = 20;
-constexpr std::size_t kLeastReadings = 3;  ///< in a window
-constexpr std::size_t kLeastWindows = 5;   ///< that two sources share
-constexpr double kWidest = 5;              ///< deviations at which a source no longer agrees
-constexpr double kFactor = 1.4;            ///< of the graduation
+constexpr std::size_t kFewestReadings = 3;  ///< in a window
+constexpr std::size_t kLeastWindows = 5;    ///< that two sources share
+constexpr double kWidest = 5;               ///< deviations at which a source no longer agrees
+constexpr double kGraduation = 1.4;         ///< of the graduation
 /// Sources do not agree better than this by chance alone: 5 cm, and as much of a turn at 10 m.
 constexpr double kLeastAccuracy = 0.05;
 
@@ -95,7 +95,7 @@ std::vector<double> graduated(const Statements& window,
       decided = decided && (weights[s] == 0 || weights[s] == 1);
     }
     if (decided && stretch > 1) break;
-    stretch *= kFactor;
+    stretch *= kGraduation;
   }
   return weights;
 }
@@ -191,7 +191,7 @@ std::vector<Disagreement> times_of(
 
 /// Returns the median of where the fixes are, relative to the poses.
 std::optional<Eigen::Vector2d> median_offset(std::vector<double>& x, std::vector<double>& y) {
-  if (x.size() < kLeastReadings) return std::nullopt;
+  if (x.size() < kFewestReadings) return std::nullopt;
   return Eigen::Vector2d(upper_median(x), upper_median(y));
 }
 

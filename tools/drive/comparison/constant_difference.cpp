@@ -1,4 +1,4 @@
-#include <waymark/tools/drive/nodes/constant_difference.hpp>
+#include <waymark/tools/drive/comparison/constant_difference.hpp>
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/detail/median.hpp>
-#include <waymark/tools/drive/nodes/chords.hpp>
+#include <waymark/tools/drive/comparison/chords.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::drive {
@@ -223,7 +223,9 @@ std::vector<int> outvoted(const ComparedReceivers& compared, std::span<const std
     return distinct.size();
   };
   std::vector<int> found;
-  for (const auto& [source, against] : opponents) {
+  for (const auto& opposed : opponents) {
+    const int source = opposed.first;
+    const std::set<int>& against = opposed.second;
     std::set<int> with = friends[source];
     with.insert(source);
     const std::size_t own = voices_of(with);

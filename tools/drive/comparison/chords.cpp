@@ -1,4 +1,4 @@
-#include <waymark/tools/drive/nodes/chords.hpp>
+#include <waymark/tools/drive/comparison/chords.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/nodes/frozen_fixes.hpp>
+#include <waymark/tools/drive/comparison/frozen_fixes.hpp>
 #include <waymark/tools/drive/nodes/gate.hpp>
 
 namespace gate_test {

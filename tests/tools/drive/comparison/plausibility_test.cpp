@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include <waymark/tools/drive/nodes/plausibility.hpp>
+#include <waymark/tools/drive/comparison/plausibility.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace plausibility_test {

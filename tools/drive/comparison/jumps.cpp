@@ -1,4 +1,4 @@
-#include <waymark/tools/drive/nodes/jumps.hpp>
+#include <waymark/tools/drive/comparison/jumps.hpp>
 
 #include <algorithm>
 #include <array>

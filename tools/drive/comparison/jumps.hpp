@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include <waymark/tools/drive/nodes/chords.hpp>
+#include <waymark/tools/drive/comparison/chords.hpp>
 
 namespace waymark::drive {
 

@@ -1,0 +1,277 @@
+#include <waymark/tools/drive/comparison/misreading.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <waymark/tools/drive/comparison/chords.hpp>
+#include <waymark/tools/drive/coordinates/coordinate_slips.hpp>
+#include <waymark/types_se2/se2.hpp>
+
+namespace waymark::drive {
+namespace {
+
+constexpr double kDegreesOfRadian = 180 / std::numbers::pi;
+constexpr double kLargestUsual = 1.5;
+
+bool is_factor(double factor) {
+  return factor > kLargestUsual || factor < 1 / kLargestUsual;
+}
+
+/// A unit, and what is read where another one was meant.
+struct NamedFactor {
+  double factor;  ///< of the odometry as read
+  const char* words;
+};
+constexpr std::array kSpeeds{NamedFactor{3.6, "km/h read as m/s: state 'unit: km/h' of the speed"},
+                             NamedFactor{1 / 3.6, "m/s read as km/h: state 'unit: m/s' of the speed"},
+                             NamedFactor{2.23694, "mph read as m/s: state 'unit: mph' of the speed"},
+                             NamedFactor{1.94384, "knots read as m/s: state 'unit: kn' of the speed"}};
+/// Both wrong at once are units, not chance: what curls up is short, and fits a point.
+constexpr double kLargestUnit = 4;
+constexpr std::array kYawRates{
+    NamedFactor{kDegreesOfRadian, "deg/s read as rad/s: state 'unit: deg/s' of the yaw rate"},
+    NamedFactor{1 / kDegreesOfRadian, "rad/s read as deg/s: state 'unit: rad/s' of the yaw rate"}};
+
+/// Returns the words of the unit; null for a factor of none.
+const char* name_of(double factor, std::span<const NamedFactor> names) {
+  constexpr double kNear = 1.03;
+  for (const NamedFactor& name : names)
+    if (factor < kNear * name.factor && factor > name.factor / kNear) return name.words;
+  return nullptr;
+}
+
+/// A factor that is no unit is a matter of calibration.
+std::string words_for_speed(double factor) {
+  const std::string words = fmt::format("speeds divided by {:.3g}", factor);
+  if (const char* unit = name_of(factor, kSpeeds)) return fmt::format("{} ({})", words, unit);
+  return fmt::format(
+      "{} (correct their scale, or state that it is not known: odometry: 'options: {{speed_scale_sigma: {:.2g}}}')",
+      words, std::abs(1 / factor - 1));
+}
+
+/// How the logs may have been meant.
+struct Reading {
+  double speed_factor = 1;  ///< as read, of what was meant
+  double yaw_factor = 1;
+  const CoordinateSlip* slip = nullptr;
+};
+
+std::string in_words(const Reading& reading) {
+  if (reading.slip != nullptr) return fmt::format("if {}", reading.slip->words);
+  std::vector<std::string> words;
+  if (reading.speed_factor != 1) words.push_back(words_for_speed(reading.speed_factor));
+  const double size = std::abs(reading.yaw_factor);
+  if (const char* unit = name_of(size, kYawRates))
+    words.push_back(fmt::format("yaw rates divided by {:.3g} ({})", size, unit));
+  if (reading.yaw_factor < 0)
+    words.emplace_back("the yaw rate positive clockwise (state 'convention: cw' of the yaw rate)");
+  return fmt::format("with {}", fmt::join(words, ", and "));
+}
+
+constexpr double kNoTurns = std::numeric_limits<double>::infinity();
+/// What yaw rates may have to be divided by, the simplest first.
+constexpr std::array kYawFactors = {
+    1.0, -1.0, kDegreesOfRadian, 1 / kDegreesOfRadian, -kDegreesOfRadian, -1 / kDegreesOfRadian, kNoTurns};
+
+/// The first receiver beside the odometry, as it was read and with other yaw rates.
+class ReckonedDrive {
+ public:
+  ReckonedDrive(const Timeline& timeline, std::span<const Fix> fixes, double standstill_mps) {
+    for (const double factor : kYawFactors) {
+      Timeline other = timeline;
+      for (Interval& interval : other.intervals) {
+        if (interval.bridged) continue;  // by the motion of the fixes, which is in the right unit
+        interval.yaw_rate_radps /= factor;
+        interval.yaw_rate_change_radps /= factor;
+      }
+      const std::vector<Eigen::Vector3d> poses = dead_reckon(other, Eigen::Vector3d::Zero(), standstill_mps);
+      receivers_[factor] = of_receiver(fixes, antenna_at_fixes(other, poses, fixes), fixes.front().source);
+    }
+  }
+
+  /// Returns chords of a length between fixes.
+  [[nodiscard]] std::vector<ChordPair> legs(double yaw_factor, double length_m) const {
+    constexpr double kLongest_s = 30;
+    return chords_of(receivers_.at(yaw_factor), kLongest_s,
+                     [&](const ChordPair& chord) { return chord.gnss.norm() >= length_m; });
+  }
+
+ private:
+  std::map<double, ReckonedFixes> receivers_;  ///< by kYawFactors
+};
+
+/// By how much the turn from one leg to the next differs, in rad; infinite if their lengths do.
+/// @param factor by which the motion of the odometry may be longer than that of the fixes
+double difference_of(const ChordPair& one, const ChordPair& next, double factor) {
+  constexpr double kLengths = 1.3;
+  for (const ChordPair* leg : {&one, &next}) {
+    const double ratio = leg->odometry.norm() / (factor * leg->gnss.norm());
+    if (!(ratio < kLengths && ratio > 1 / kLengths)) return std::numeric_limits<double>::infinity();
+  }
+  return std::abs(
+      wrap_angle(angle_between(one.gnss, next.gnss) - angle_between(one.odometry, next.odometry)));
+}
+
+/// Returns that of each two legs that follow each other.
+std::vector<double> differences_of(std::span<const ChordPair> legs, double factor) {
+  std::vector<double> differences;
+  for (std::size_t i = 1; i < legs.size(); ++i)
+    if (legs[i].follows) differences.push_back(difference_of(legs[i - 1], legs[i], factor));
+  return differences;
+}
+
+std::size_t count_within(double tolerance_rad, std::span<const double> differences) {
+  return static_cast<std::size_t>(
+      std::count_if(differences.begin(), differences.end(), [&](double one) { return one < tolerance_rad; }));
+}
+
+/// How many pairs agree by one reading, and do not by another one.
+struct Comparison {
+  std::size_t gained = 0;
+  std::size_t lost = 0;
+};
+
+/// @param before, after of the same pairs
+Comparison compare(std::span<const double> before, std::span<const double> after, double tolerance_rad) {
+  Comparison counts;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const bool agreed = before[i] < tolerance_rad;
+    const bool agrees = after[i] < tolerance_rad;
+    counts.gained += agrees && !agreed;
+    counts.lost += agreed && !agrees;
+  }
+  return counts;
+}
+
+/// Tells whether another reading explains what the drive as it was read does not.
+bool mends(std::span<const double> as_read, std::span<const double> other, double tolerance_rad) {
+  constexpr std::size_t kFewest = 10;
+  constexpr std::size_t kTimesAsMany = 10;
+  const Comparison counts = compare(as_read, other, tolerance_rad);
+  return counts.gained >= kFewest && counts.gained >= kTimesAsMany * counts.lost &&
+         2 * count_within(tolerance_rad, other) > other.size();
+}
+
+/// Tells whether turns are of use: most of a road is straight, and no turns at all explain it too.
+bool turns_rightly(std::span<const double> straight, std::span<const double> other, double tolerance_rad) {
+  constexpr std::size_t kFewest = 3;
+  constexpr std::size_t kTimesAsMany = 2;
+  const Comparison counts = compare(straight, other, tolerance_rad);
+  return counts.gained >= kFewest + counts.lost && counts.gained >= kTimesAsMany * counts.lost;
+}
+
+double median_factor(std::span<const ChordPair> legs) {
+  std::vector<double> factors;
+  for (const ChordPair& leg : legs) factors.push_back(leg.odometry.norm() / leg.gnss.norm());
+  return median_with_sigma(std::move(factors)).value;
+}
+
+/// A reading, and how its legs differ from those of the fixes.
+struct Candidate {
+  Reading reading;
+  std::vector<double> differences;
+};
+
+/// Returns the words for slips of coordinates that explain the drive as well.
+std::string in_words(std::span<const CoordinateSlip* const> slips) {
+  std::string words;
+  bool mirrored = false;
+  for (const CoordinateSlip* slip : slips) {
+    if (slip->mirrors && mirrored) continue;  // north and south, east and west look alike
+    mirrored = mirrored || slip->mirrors;
+    words += fmt::format("{} {}", words.empty() ? ", unless" : " or",
+                         slip->mirrors ? "the sign of a longitude (W) or latitude (S) is lost" : slip->words);
+  }
+  return words;
+}
+
+/// Returns the candidate with which most pairs agree. A later one must make five more agree; coordinates that do
+/// as well are named with it.
+/// @param candidates the first one is the drive as it was read
+std::optional<Misreading> best_of(std::span<const Candidate> candidates, double length_m,
+                                  double tolerance_rad) {
+  constexpr std::size_t kMore = 5;
+  if (candidates.empty()) return std::nullopt;
+  const std::vector<double>& as_read = candidates.front().differences;
+  const auto straight = std::find_if(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
+    return candidate.reading.yaw_factor == kNoTurns;
+  });
+  const Reading* best = nullptr;
+  std::size_t agree = 0;
+  std::vector<const CoordinateSlip*> as_good;
+  for (const auto& [reading, differences] : candidates) {
+    if (!mends(as_read, differences, tolerance_rad)) continue;
+    if (reading.yaw_factor != 1 && !turns_rightly(straight->differences, differences, tolerance_rad))
+      continue;
+    const std::size_t count = count_within(tolerance_rad, differences);
+    if (best == nullptr || count >= agree + kMore) {
+      best = &reading;
+      agree = count;
+      as_good.clear();
+    } else if (reading.slip != nullptr && count + kMore > agree) {
+      as_good.push_back(reading.slip);
+    }
+  }
+  if (best == nullptr) return std::nullopt;
+  Misreading misreading{
+      fmt::format("the odometry does not fit the fixes ({} of {} pairs of legs of {:g} m agree), but it does "
+                  "({} agree) {}{}",
+                  count_within(tolerance_rad, as_read), as_read.size(), length_m, agree, in_words(*best),
+                  in_words(as_good)),
+      {}};
+  if (best->speed_factor != 1 && best->yaw_factor == 1) misreading.speed_factor = best->speed_factor;
+  return misreading;
+}
+
+/// Returns the differences with yaw rates divided by a factor, and speeds by that which then fits.
+Candidate with_yaw_rates(double yaw_factor, const ReckonedDrive& drive, double length_m) {
+  const std::vector<ChordPair> legs = drive.legs(yaw_factor, length_m);
+  const double found = median_factor(legs);
+  const double largest = yaw_factor == 1 ? std::numeric_limits<double>::infinity() : kLargestUnit;
+  const bool is_plausible = is_factor(found) && found < largest && found > 1 / largest;
+  const double speed_factor = is_plausible ? found : 1;
+  return {{speed_factor, yaw_factor}, differences_of(legs, speed_factor)};
+}
+
+/// Returns the drive as it was read, and as it may have been meant, the simplest first.
+std::vector<Candidate> candidates_for(const ReckonedDrive& drive, double length_m,
+                                      const std::optional<GeodeticPoint>& place) {
+  const std::vector<ChordPair> as_read = drive.legs(1, length_m);
+  if (as_read.empty()) return {};
+  std::vector<Candidate> candidates = {{{}, differences_of(as_read, 1)}};
+  for (const double yaw_factor : kYawFactors)
+    candidates.push_back(with_yaw_rates(yaw_factor, drive, length_m));
+  if (!place) return candidates;
+  for (const CoordinateSlip& slip : coordinate_slips()) {
+    const Eigen::Matrix2d meant = mending(slip, *place);
+    std::vector<ChordPair> legs = as_read;
+    for (ChordPair& leg : legs) leg.gnss = meant * leg.gnss;
+    candidates.push_back({{.slip = &slip}, differences_of(legs, 1)});
+  }
+  return candidates;
+}
+
+}  // namespace
+
+std::optional<Misreading> find_misreading(const Timeline& timeline, std::span<const Fix> fixes,
+                                          double standstill_mps, const std::optional<GeodeticPoint>& place) {
+  if (fixes.empty()) return std::nullopt;
+  const ReckonedDrive drive(timeline, fixes, standstill_mps);
+  for (const double length_m : {20.0, 60.0, 180.0}) {
+    const std::vector<Candidate> candidates = candidates_for(drive, length_m, place);
+    for (const double tolerance_rad : {0.3, 0.15, 0.075})
+      if (std::optional<Misreading> found = best_of(candidates, length_m, tolerance_rad)) return found;
+  }
+  return std::nullopt;
+}
+
+}  // namespace waymark::drive
