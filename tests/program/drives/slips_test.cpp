@@ -77,7 +77,7 @@ TEST_CASE("slips: a scale of the speed that is stated as unknown is found") {
   write_text(drive, read_text(drive) +
                         "calibration: {gyro_bias: random_walk, speed_scale: random_walk, "
                         "speed_scale_sigma: 0.3}\n");
-  const RunResult result = run({"run", drive, "-o", folder + "out", "-q"});
+  const RunResult result = run({"run", drive, "-o", folder + "out"});
   CHECK(result.code == 0);
   CHECK_FALSE(contains(result.err, "does not fit"));
   const nlohmann::json metrics = nlohmann::json::parse(read_text(folder + "out/metrics.json"));
@@ -106,6 +106,27 @@ TEST_CASE("slips: a yaw rate in deg/s read as rad/s, and the reverse, refuse the
   const RunResult small = run({"convert", slow, "-o", folder + "a.graph"});
   CHECK(small.code == 3);
   CHECK(contains(small.err, "rad/s read as deg/s: state 'unit: rad/s' of the yaw rate"));
+}
+
+TEST_CASE("slips: a gyro that is dead leaves positions as good as those of the receiver, and is told") {
+  const std::string folder = fresh_folder();
+  REQUIRE(
+      run({"simulate", "--preset", "mixed", "--seed", "13", "--duration", "300", "-o", folder, "-q"}).code ==
+      0);
+  std::istringstream rows(read_text(folder + "odometry.csv"));
+  std::string text;
+  for (std::string row; std::getline(rows, row);) {
+    double time = 0, speed = 0;
+    text += std::sscanf(row.c_str(), "%lf,%lf", &time, &speed) == 2 ? line(time, speed, 0) : row + "\n";
+  }
+  write_text(folder + "odometry.csv", text);
+  const RunResult result = run({"run", folder + "drive.yaml", "-o", folder + "out"});
+  CHECK(result.code == 0);
+  CHECK(contains(result.err, "the estimate of constant_twist heading_variance_per_s is"));
+  const nlohmann::json metrics = nlohmann::json::parse(read_text(folder + "out/metrics.json"));
+  const nlohmann::json& truth = metrics["evaluations"][0]["truth"];
+  CHECK(truth["fused"]["position"]["rmse_m"].get<double>() <
+        1.05 * truth["gnss"]["position"]["rmse_m"].get<double>());
 }
 
 TEST_CASE(

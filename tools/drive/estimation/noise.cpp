@@ -54,14 +54,15 @@ void add_parameters(const std::string& source, const std::string& owner, const s
   }
 }
 
-/// A parameter may leave its prior by kNoiseReach deviations, but not what its option allows.
+/// A parameter may leave its prior as far as kNoiseReach says, but not what its option allows.
 PosteriorBounds bounds_of(const NoiseEstimate& noise) {
   const auto size = static_cast<Eigen::Index>(noise.parameters.size());
   PosteriorBounds bounds{Eigen::VectorXd(size), Eigen::VectorXd(size)};
   Eigen::Index i = 0;
   for (const NoiseParameter& parameter : noise.parameters) {
-    bounds.low[i] = std::max(-kNoiseReach, coordinate_of(parameter.range.low, parameter.prior));
-    bounds.high[i] = std::min(kNoiseReach, coordinate_of(parameter.range.high, parameter.prior));
+    const double above = parameter.prior.linear ? kUsualNoise : kNoiseReach;
+    bounds.low[i] = std::max(-kUsualNoise, coordinate_of(parameter.range.low, parameter.prior));
+    bounds.high[i] = std::min(above, coordinate_of(parameter.range.high, parameter.prior));
     ++i;
   }
   return bounds;

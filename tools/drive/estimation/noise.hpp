@@ -16,8 +16,11 @@
 
 namespace waymark::drive {
 
-/// The search may leave the prior of a parameter by this many of its deviations.
-inline constexpr double kNoiseReach = 4;
+/// A parameter further from its prior than this many deviations is not that of a sound drive.
+inline constexpr double kUsualNoise = 4;
+/// The search may leave the prior by this many deviations towards more noise: a gyro that is dead has 0.3 rad in a
+/// second, and is worth nothing only if that can be found. Towards less it ends at kUsualNoise.
+inline constexpr double kNoiseReach = 8;
 
 /// The estimate of one option.
 struct NoiseParameter {

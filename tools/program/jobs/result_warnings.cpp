@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStateSigmas = 6;
 constexpr double kHeldSigmas = 3;
-constexpr double kNearEnd = 0.95;  // of the reach of the search
+constexpr double kNearEnd = 0.95;  // of what is usual
 constexpr double kWorseThanRaw = 1.5;
 constexpr const char* kRemedy = "check units, signs, columns and clocks";
 
@@ -46,11 +46,10 @@ void check_noise(const drive::NoiseEstimate& noise, std::vector<std::string>& wa
   for (const drive::NoiseParameter& parameter : noise.parameters) {
     if (parameter.prior.linear || !(parameter.value > 0) || !(parameter.prior.mean > 0)) continue;
     const double factor = parameter.value / parameter.prior.mean;
-    if (!(std::log(factor) > kNearEnd * drive::kNoiseReach * parameter.prior.deviation)) continue;
-    warnings.push_back(
-        fmt::format("the estimate of {} {} is {:.3g} {}, {:.0f} times its usual value, where the search "
-                    "ends: {}",
-                    parameter.owner, parameter.name(), parameter.value, parameter.unit, factor, kRemedy));
+    if (!(std::log(factor) > kNearEnd * drive::kUsualNoise * parameter.prior.deviation)) continue;
+    warnings.push_back(fmt::format("the estimate of {} {} is {:.3g} {}, {:.0f} times its usual value: {}",
+                                   parameter.owner, parameter.name(), parameter.value, parameter.unit, factor,
+                                   kRemedy));
   }
 }
 

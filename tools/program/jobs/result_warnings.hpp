@@ -14,7 +14,7 @@ namespace waymark::program {
 
 /// Returns a sentence for each fact that a sound drive does not show: a state more than 6 sigmas of
 /// its prior from zero (the mean of the prior), a first value of a calibration state more than 2.5 sigmas from it,
-/// a noise parameter at the upper end of its search (kNoiseReach), residuals of fixes twice as large as
+/// a noise parameter far above its prior (kUsualNoise), residuals of fixes twice as large as
 /// their accuracies say or a quarter of them, fixes ten times as far away as they claim (and 10 m),
 /// readings of a sensor twice as far away as its sigmas say, a source of which a loss down-weights a third, and fused
 /// positions whose error exceeds that of the raw fixes by half.
