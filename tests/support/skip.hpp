@@ -6,15 +6,6 @@
 
 namespace waymark_test {
 
-/// Whether the tests are built with AddressSanitizer, whose shadow memory takes all of the address space.
-#if defined(__SANITIZE_ADDRESS__)
-inline constexpr bool kAddressSanitized = true;
-#elif defined(__has_feature)
-inline constexpr bool kAddressSanitized = __has_feature(address_sanitizer);
-#else
-inline constexpr bool kAddressSanitized = false;
-#endif
-
 /// Prints "SKIPPED: reason", by which ctest counts the case as skipped.
 void skip(const std::string& reason);
 

@@ -5,6 +5,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <waymark/core/base/detail/address_sanitizer.hpp>
+
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
@@ -23,7 +25,7 @@ RunResult shell(const std::string& folder, const std::string& line) {
 }  // namespace
 
 TEST_CASE("pipes: text without an end is refused with little memory") {
-  if (waymark_test::kAddressSanitized)
+  if (waymark::detail::kAddressSanitized)
     return waymark_test::skip("AddressSanitizer needs the address space that is limited here");
   const std::string folder = fresh_folder();
   // 1.2 GB of address space hold the program and its libraries, and 60 s would fill them many times.

@@ -1,10 +1,11 @@
 // Input that was made to harm: it is refused as bad input, with little memory and in little time, and
 // nothing of it steers the terminal.
+#include <sys/stat.h>
 #include <algorithm>
 
 #include <catch2/catch.hpp>
 
-#include <sys/stat.h>
+#include <waymark/core/base/detail/address_sanitizer.hpp>
 
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
@@ -61,7 +62,7 @@ TEST_CASE("untrusted: a name longer than any file's is bad input, wherever it st
 }
 
 TEST_CASE("untrusted: endless devices are refused by what they begin with") {
-  if (waymark_test::kAddressSanitized)
+  if (waymark::detail::kAddressSanitized)
     return waymark_test::skip("AddressSanitizer needs the address space that is limited here");
   for (const char* command :
        {"check", "inspect", "doctor", "sync", "evaluate", "run -o out", "convert -o out.graph"}) {

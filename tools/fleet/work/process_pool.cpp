@@ -15,6 +15,7 @@
 #include <cstring>
 #include <fstream>
 
+#include <waymark/core/base/detail/address_sanitizer.hpp>
 #include <waymark/core/base/error.hpp>
 
 namespace waymark::fleet {
@@ -49,7 +50,7 @@ bool redirect(const std::string& file, int stream) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(kCannotStart);  // it died before the line above
-  if (process.memory_bytes > 0) {
+  if (process.memory_bytes > 0 && !detail::kAddressSanitized) {
     const rlimit limit{process.memory_bytes, process.memory_bytes};
     ::setrlimit(RLIMIT_DATA, &limit);
   }

