@@ -303,6 +303,9 @@ TEST_CASE("inspection: names of columns and signals say quantity, unit and sense
   CHECK(told("Vehicle Speed [km/h]") == "speed|km/h|");
   CHECK(told("yawrate_radps") == "yaw_rate|rad/s|");
   CHECK(told("yawrate_projected_degps") == "yaw_rate|deg/s|");
+  CHECK(told("Yaw [deg/s]") == "yaw_rate|deg/s|");
+  CHECK(told("yaw_degps_cw") == "yaw_rate|deg/s|cw");
+  CHECK(told("yaw_deg") == "heading|deg|");
   CHECK(told("gyro_x_degps") == "gyro_x|deg/s|");
   CHECK(told("AngularRateZ") == "gyro_z||");
   CHECK(told("accel_y (m/s^2)") == "acceleration_y|m/s^2|");

@@ -20,7 +20,9 @@ double rate_of(std::size_t count, Stamp first, Stamp last) {
 /// Proposes the quantity of a signal in the form of a table column. Message and unit may say more
 /// than its name.
 ColumnProposal propose_signal(const formats::DbcMessage& message, const formats::DbcSignal& signal) {
-  ColumnProposal proposal = propose_quantity(signal.name);
+  const std::string_view unit = formats::known_unit(signal.unit);
+  ColumnProposal proposal =
+      propose_quantity(unit.empty() ? signal.name : fmt::format("{} [{}]", signal.name, unit));
   const std::vector<std::string> words = words_of(message.name);
   const auto says = [&](std::string_view word) {
     return std::find(words.begin(), words.end(), word) != words.end();
@@ -29,7 +31,6 @@ ColumnProposal propose_signal(const formats::DbcMessage& message, const formats:
     proposal.quantity = (says("gnss") || says("gps")) && !signal.unit.empty() ? "gnss_time" : "";
   if (proposal.quantity == "heading" && (says("gnss") || says("gps"))) proposal.quantity = "course";
   if (proposal.quantity.empty()) return {};
-  const std::string_view unit = formats::known_unit(signal.unit);
   proposal.unit_known = !unit.empty() || proposal.unit_known;
   // The DBC states the unit; the reader uses it and notes it.
   proposal.unit = unit.empty() ? proposal.unit : std::string();

@@ -182,6 +182,15 @@ std::string beginning_of(std::span<const std::string> words, std::size_t& used) 
   return {};
 }
 
+/// A yaw in deg/s is a yaw rate, whatever its name.
+void read_dimension(std::span<const std::string> words, ColumnProposal& proposal) {
+  const bool is_rate = std::any_of(words.begin(), words.end(), [](const std::string& word) {
+    const std::string_view unit = formats::known_unit(word);
+    return !unit.empty() && dimension(unit) == "rate";
+  });
+  if (is_rate && proposal.quantity == "heading") proposal.quantity = "yaw_rate";
+}
+
 void read_unit(std::span<const std::string> words, ColumnProposal& proposal) {
   for (auto word = words.rbegin(); word != words.rend(); ++word) {
     const std::string_view unit = formats::known_unit(*word);
@@ -296,6 +305,7 @@ ColumnProposal propose_quantity(std::string_view name) {
            std::find(kHarmless.begin(), kHarmless.end(), word) != kHarmless.end();
   };
   if (!rest.empty() && !understood(rest.front())) return {};
+  read_dimension(rest, proposal);
   read_unit(rest.empty() ? words : rest, proposal);
   read_sense(words, proposal);
   read_code(words, proposal);
