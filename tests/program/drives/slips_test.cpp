@@ -69,21 +69,20 @@ TEST_CASE("slips: a speed in km/h refuses the drive, and nothing is written") {
   CHECK_FALSE(std::filesystem::exists(folder + "out"));
 }
 
-TEST_CASE("slips: a scale of the speed that is stated as unknown is found") {
+TEST_CASE("slips: a scale of the speed that is wrong by tens of percent is told, found and costs little") {
   const std::string folder = fresh_folder();
-  const std::string drive =
-      drive_with(folder, [&](double t, double v, double w) { return line(t, 2.5 * v, w); });
-  CHECK(run({"convert", drive, "-o", folder + "a.graph"}).code == 3);
-  write_text(drive, read_text(drive) +
-                        "calibration: {gyro_bias: random_walk, speed_scale: random_walk, "
-                        "speed_scale_sigma: 0.3}\n");
-  const RunResult result = run({"run", drive, "-o", folder + "out"});
-  CHECK(result.code == 0);
-  CHECK_FALSE(contains(result.err, "does not fit"));
-  const nlohmann::json metrics = nlohmann::json::parse(read_text(folder + "out/metrics.json"));
-  const nlohmann::json& truth = metrics["evaluations"][0]["truth"];
-  CHECK(truth["fused"]["position"]["rmse_m"].get<double>() <
-        0.5 * truth["gnss"]["position"]["rmse_m"].get<double>());
+  for (const double factor : {0.7, 1.4, 2.5}) {
+    INFO("factor " << factor);
+    const std::string drive =
+        drive_with(folder, [&](double t, double v, double w) { return line(t, factor * v, w); });
+    const RunResult result = run({"run", drive, "-o", folder + "out"});
+    CHECK(result.code == 0);
+    CHECK(contains(result.err, "warning: the odometry's distance"));
+    const nlohmann::json metrics = nlohmann::json::parse(read_text(folder + "out/metrics.json"));
+    const nlohmann::json& truth = metrics["evaluations"][0]["truth"];
+    CHECK(truth["fused"]["position"]["rmse_m"].get<double>() <
+          0.6 * truth["gnss"]["position"]["rmse_m"].get<double>());
+  }
 }
 
 TEST_CASE("slips: a yaw rate of the wrong sign refuses the drive at 5 Hz too") {
@@ -111,7 +110,7 @@ TEST_CASE("slips: a yaw rate in deg/s read as rad/s, and the reverse, refuse the
 TEST_CASE("slips: a gyro that is dead leaves positions as good as those of the receiver, and is told") {
   const std::string folder = fresh_folder();
   REQUIRE(
-      run({"simulate", "--preset", "mixed", "--seed", "13", "--duration", "300", "-o", folder, "-q"}).code ==
+      run({"simulate", "--preset", "urban", "--seed", "4", "--duration", "600", "-o", folder, "-q"}).code ==
       0);
   std::istringstream rows(read_text(folder + "odometry.csv"));
   std::string text;
@@ -122,11 +121,12 @@ TEST_CASE("slips: a gyro that is dead leaves positions as good as those of the r
   write_text(folder + "odometry.csv", text);
   const RunResult result = run({"run", folder + "drive.yaml", "-o", folder + "out"});
   CHECK(result.code == 0);
+  CHECK_FALSE(contains(result.err, "the fixes jump"));  // they do at its bends
   CHECK(contains(result.err, "the estimate of constant_twist heading_variance_per_s is"));
   const nlohmann::json metrics = nlohmann::json::parse(read_text(folder + "out/metrics.json"));
   const nlohmann::json& truth = metrics["evaluations"][0]["truth"];
   CHECK(truth["fused"]["position"]["rmse_m"].get<double>() <
-        1.05 * truth["gnss"]["position"]["rmse_m"].get<double>());
+        truth["gnss"]["position"]["rmse_m"].get<double>());
 }
 
 TEST_CASE(

@@ -11,11 +11,14 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <waymark/core/base/detail/address_sanitizer.hpp>
+
 #include "program/support/help.hpp"
 #include "program/support/material.hpp"
 #include "program/support/page_checks.hpp"
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
+#include "support/skip.hpp"
 
 namespace fleet_test {
 
@@ -332,6 +335,8 @@ TEST_CASE("fleet: shares of a cluster give the bytes of one machine, and status 
 }
 
 TEST_CASE("fleet: a drive that needs more than its share of the memory is run alone") {
+  if (waymark::detail::kAddressSanitized)
+    return waymark_test::skip("AddressSanitizer knows no limit of memory");
   const std::string folder = fresh_folder();
   const std::string drives = write_drives(folder, 2);
   // A share of 3 MB is too small; all of it together is enough.

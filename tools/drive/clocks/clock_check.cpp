@@ -13,6 +13,7 @@
 #include <waymark/tools/drive/clocks/odometry_check.hpp>
 #include <waymark/tools/drive/clocks/offset_names.hpp>
 #include <waymark/tools/drive/clocks/synchronise.hpp>
+#include <waymark/tools/drive/comparison/misreading.hpp>
 #include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
@@ -116,12 +117,20 @@ PreparedDrive without_contradicted(PreparedDrive drive, const DriveLogs& logs,
   return drive;
 }
 
+/// Whether a second clock is the only reason that is left: a drive that was read wrong fits elsewhere by chance.
+bool is_another_clock(const PreparedDrive& drive, const ClockOffset& offset) {
+  constexpr double kStands_mps = 0.01;
+  if (std::abs(offset.late_s) <= kOneClock_s) return false;
+  return !find_misreading(build_timeline(drive.odometry, drive.fixes, drive.timeline), drive.fixes,
+                          kStands_mps, {});
+}
+
 /// Compares the clock of the only odometry with that of the fixes.
 PreparedDrive with_clock_told(PreparedDrive drive, const DriveLogs& logs, DriveDescription description,
                               ClocksApart treatment) {
   const std::optional<ClockOffset> offset = offset_shown(drive.odometry, drive.fixes);
   if (!offset) return drive;
-  const bool moves = treatment == ClocksApart::move && std::abs(offset->late_s) > kOneClock_s;
+  const bool moves = treatment == ClocksApart::move && is_another_clock(drive, *offset);
   if (moves) {
     OdometryConfig& odometry = config_of(drive.odometry_name, description);
     odometry.speed_delay_s += offset->late_s;

@@ -41,6 +41,17 @@ bool take(const ClockOffset& offset, std::optional<ClockOffset>& shown) {
   return true;
 }
 
+/// Returns the fixes between the first and the last sample of an odometry whose stamps are late.
+std::vector<Fix> within(const std::vector<OdometrySample>& samples, const std::vector<Fix>& fixes,
+                        double late_s = 0) {
+  std::vector<Fix> result;
+  for (const Fix& fix : fixes) {
+    const Stamp by_odometry = fix.stamp.later(late_s);
+    if (by_odometry >= samples.front().stamp && by_odometry <= samples.back().stamp) result.push_back(fix);
+  }
+  return result;
+}
+
 /// What a receiver says of the clock of an odometry.
 struct ClockVerdict {
   std::optional<ClockOffset> offset;  ///< empty: it shows none
@@ -64,7 +75,18 @@ ClockVerdict clock_verdict(const std::vector<OdometrySample>& odometry, const st
   const bool is_better = !is_near_zero(far->late_s) && far->score > verdict.near->score + kLead;
   verdict.fits =
       !is_better && std::max(verdict.near->speed_correlation, verdict.near->turn_correlation) > kFits;
-  if (!verdict.fits) verdict.offset = offset_to(odometry, fixes);
+  if (verdict.fits) return verdict;
+  // Poor fixes spoil the fit where the clocks are right, and a drive that repeats itself fits elsewhere too. But by
+  // the right clock logs of one drive share no less of it.
+  constexpr double kAbout_s = 0.5;
+  constexpr double kAsMany = 0.95;
+  const std::optional<ClockOffset> offset = offset_to(odometry, fixes);
+  if (!offset) return verdict;
+  const std::optional<Lag> there = search.best(offset->late_s - kAbout_s, offset->late_s + kAbout_s);
+  const auto shared = static_cast<double>(within(odometry, fixes, offset->late_s).size());
+  if (there && there->score > verdict.near->score + kLead &&
+      shared >= kAsMany * static_cast<double>(fixes.size()))
+    verdict.offset = offset;
   return verdict;
 }
 
@@ -104,17 +126,6 @@ struct Verdict {
   std::optional<Lag> near{};           ///< how its motion fits near zero
   std::size_t covered = 0;             ///< fixes between its samples, by its right clock
 };
-
-/// Returns the fixes between the first and the last sample of an odometry whose stamps are late.
-std::vector<Fix> within(const std::vector<OdometrySample>& samples, const std::vector<Fix>& fixes,
-                        double late_s = 0) {
-  std::vector<Fix> result;
-  for (const Fix& fix : fixes) {
-    const Stamp by_odometry = fix.stamp.later(late_s);
-    if (by_odometry >= samples.front().stamp && by_odometry <= samples.back().stamp) result.push_back(fix);
-  }
-  return result;
-}
 
 /// Returns the offset of a clock that is so far off that it leaves few fixes within the odometry.
 std::optional<ClockOffset> far_offset(const std::vector<OdometrySample>& samples,

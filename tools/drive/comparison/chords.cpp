@@ -46,7 +46,8 @@ ReckonedFixes of_receiver(std::span<const Fix> fixes, std::span<const Eigen::Vec
 
 ChordPair chord_between(const ReckonedFixes& receiver, std::size_t first, std::size_t last) {
   return {.gnss = receiver.fixes[last].position - receiver.fixes[first].position,
-          .odometry = receiver.antenna[last].head<2>() - receiver.antenna[first].head<2>()};
+          .odometry = receiver.antenna[last].head<2>() - receiver.antenna[first].head<2>(),
+          .duration_s = seconds_between(receiver.fixes[first].stamp, receiver.fixes[last].stamp)};
 }
 
 std::vector<ChordPair> chords_of(const ReckonedFixes& receiver, double longest_s,

@@ -28,6 +28,7 @@ struct ReckonedFixes {
 struct ChordPair {
   Eigen::Vector2d gnss = Eigen::Vector2d::Zero();
   Eigen::Vector2d odometry = Eigen::Vector2d::Zero();
+  double duration_s = 0;
   double heading_rad = 0;  ///< mean of the odometry along the chord, not wrapped
   bool follows = false;    ///< it begins at the end of the previous chord
 };

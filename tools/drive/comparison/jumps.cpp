@@ -276,9 +276,31 @@ void mark_undone(const ReckonedFixes& receiver, std::size_t first, std::size_t l
   for (std::size_t j = is_away_wrong ? first : first + 1; j < last; j += 2) jumps[j].undone = true;
 }
 
+/// Tells whether the odometry turns at most bends of the fixes, or they have few. One with a dead gyro does not, and
+/// the fixes jump at each bend.
+bool turns_with_fixes(const ReckonedFixes& receiver) {
+  constexpr double kLeg_m = 60;
+  constexpr double kLongest_s = 60;
+  constexpr double kBend_rad = 0.5;
+  constexpr std::size_t kFewest = 5;
+  std::size_t bends = 0;
+  std::size_t followed = 0;
+  const auto is_complete = [](const ChordPair& chord) { return chord.gnss.norm() >= kLeg_m; };
+  const std::vector<ChordPair> legs = chords_of(receiver, kLongest_s, is_complete);
+  for (std::size_t i = 1; i < legs.size(); ++i) {
+    const double turn = angle_between(legs[i - 1].gnss, legs[i].gnss);
+    if (!legs[i].follows || std::abs(turn) < kBend_rad) continue;
+    const double apart = wrap_angle(angle_between(legs[i - 1].odometry, legs[i].odometry) - turn);
+    ++bends;
+    followed += std::abs(apart) < 0.5 * std::abs(turn);
+  }
+  return bends < kFewest || 2 * followed >= bends;
+}
+
 }  // namespace
 
 std::vector<Jump> jumps_of(const ReckonedFixes& receiver) {
+  if (!turns_with_fixes(receiver)) return {};
   const std::size_t count = receiver.fixes.size();
   std::vector<Jump> jumps;
   for (std::size_t i = 1; i < count; ++i)

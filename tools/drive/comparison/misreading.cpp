@@ -82,31 +82,59 @@ constexpr double kNoTurns = std::numeric_limits<double>::infinity();
 constexpr std::array kYawFactors = {
     1.0, -1.0, kDegreesOfRadian, 1 / kDegreesOfRadian, -kDegreesOfRadian, -1 / kDegreesOfRadian, kNoTurns};
 
+/// Returns by how much the odometry turns more than the fixes from leg to leg, in rad.
+double turns_apart(const ChordPair& one, const ChordPair& next) {
+  return wrap_angle(angle_between(one.odometry, next.odometry) - angle_between(one.gnss, next.gnss));
+}
+
+/// Returns the bias of the yaw rate that the legs show in the median, rad/s; 0 for few.
+double bias_of(std::span<const ChordPair> legs) {
+  constexpr std::size_t kFewest = 10;
+  std::vector<double> biases;
+  for (std::size_t i = 1; i < legs.size(); ++i)
+    if (legs[i].follows)
+      biases.push_back(turns_apart(legs[i - 1], legs[i]) /
+                       (0.5 * (legs[i - 1].duration_s + legs[i].duration_s)));
+  return biases.size() < kFewest ? 0 : median_with_sigma(std::move(biases)).value;
+}
+
 /// The first receiver beside the odometry, as it was read and with other yaw rates.
 class ReckonedDrive {
  public:
   ReckonedDrive(const Timeline& timeline, std::span<const Fix> fixes, double standstill_mps) {
-    for (const double factor : kYawFactors) {
+    constexpr double kShort_m = 20;
+    const auto reckoned = [&](double factor, double bias_radps) {
       Timeline other = timeline;
       for (Interval& interval : other.intervals) {
         if (interval.bridged) continue;  // by the motion of the fixes, which is in the right unit
-        interval.yaw_rate_radps /= factor;
+        interval.yaw_rate_radps = interval.yaw_rate_radps / factor - bias_radps;
         interval.yaw_rate_change_radps /= factor;
       }
       const std::vector<Eigen::Vector3d> poses = dead_reckon(other, Eigen::Vector3d::Zero(), standstill_mps);
-      receivers_[factor] = of_receiver(fixes, antenna_at_fixes(other, poses, fixes), fixes.front().source);
-    }
+      return of_receiver(fixes, antenna_at_fixes(other, poses, fixes), fixes.front().source);
+    };
+    for (const double factor : kYawFactors) receivers_[factor] = reckoned(factor, 0);
+    without_bias_ = reckoned(1, bias_of(legs(1, kShort_m)));
   }
 
   /// Returns chords of a length between fixes.
   [[nodiscard]] std::vector<ChordPair> legs(double yaw_factor, double length_m) const {
-    constexpr double kLongest_s = 30;
-    return chords_of(receivers_.at(yaw_factor), kLongest_s,
-                     [&](const ChordPair& chord) { return chord.gnss.norm() >= length_m; });
+    return legs(receivers_.at(yaw_factor), length_m);
+  }
+  /// Returns those of the drive as it was read, less the bias of the gyro.
+  [[nodiscard]] std::vector<ChordPair> legs_without_bias(double length_m) const {
+    return legs(without_bias_, length_m);
   }
 
  private:
+  static std::vector<ChordPair> legs(const ReckonedFixes& receiver, double length_m) {
+    constexpr double kLongest_s = 30;
+    return chords_of(receiver, kLongest_s,
+                     [&](const ChordPair& chord) { return chord.gnss.norm() >= length_m; });
+  }
+
   std::map<double, ReckonedFixes> receivers_;  ///< by kYawFactors
+  ReckonedFixes without_bias_;
 };
 
 /// By how much the turn from one leg to the next differs, in rad; infinite if their lengths do.
@@ -117,8 +145,7 @@ double difference_of(const ChordPair& one, const ChordPair& next, double factor)
     const double ratio = leg->odometry.norm() / (factor * leg->gnss.norm());
     if (!(ratio < kLengths && ratio > 1 / kLengths)) return std::numeric_limits<double>::infinity();
   }
-  return std::abs(
-      wrap_angle(angle_between(one.gnss, next.gnss) - angle_between(one.odometry, next.odometry)));
+  return std::abs(turns_apart(one, next));
 }
 
 /// Returns that of each two legs that follow each other.
@@ -232,28 +259,48 @@ std::optional<Misreading> best_of(std::span<const Candidate> candidates, double 
   return misreading;
 }
 
+/// Whether a factor of the speed is no unit, so that it is a matter of calibration.
+bool is_calibration(double factor) {
+  return name_of(factor, kSpeeds) == nullptr && factor < kLargestUnit && factor > 1 / kLargestUnit;
+}
+
+/// Returns the drive as it was read, with a scale and a bias of the gyro that no unit is to be blamed for.
+Candidate as_read(const ReckonedDrive& drive, double length_m) {
+  constexpr double kWide_rad = 0.3;
+  Candidate best;
+  for (const bool without_bias : {false, true}) {
+    const std::vector<ChordPair> legs =
+        without_bias ? drive.legs_without_bias(length_m) : drive.legs(1, length_m);
+    const double found = median_factor(legs);
+    std::vector<double> differences = differences_of(legs, is_calibration(found) ? found : 1);
+    if (!without_bias || count_within(kWide_rad, differences) > count_within(kWide_rad, best.differences))
+      best.differences = std::move(differences);
+  }
+  return best;
+}
+
 /// Returns the differences with yaw rates divided by a factor, and speeds by that which then fits.
 Candidate with_yaw_rates(double yaw_factor, const ReckonedDrive& drive, double length_m) {
   const std::vector<ChordPair> legs = drive.legs(yaw_factor, length_m);
   const double found = median_factor(legs);
-  const double largest = yaw_factor == 1 ? std::numeric_limits<double>::infinity() : kLargestUnit;
-  const bool is_plausible = is_factor(found) && found < largest && found > 1 / largest;
-  const double speed_factor = is_plausible ? found : 1;
+  const bool is_unit = yaw_factor == 1 ? !is_calibration(found)
+                                       : is_factor(found) && found < kLargestUnit && found > 1 / kLargestUnit;
+  const double speed_factor = is_unit ? found : 1;
   return {{speed_factor, yaw_factor}, differences_of(legs, speed_factor)};
 }
 
 /// Returns the drive as it was read, and as it may have been meant, the simplest first.
 std::vector<Candidate> candidates_for(const ReckonedDrive& drive, double length_m,
                                       const std::optional<GeodeticPoint>& place) {
-  const std::vector<ChordPair> as_read = drive.legs(1, length_m);
-  if (as_read.empty()) return {};
-  std::vector<Candidate> candidates = {{{}, differences_of(as_read, 1)}};
+  const std::vector<ChordPair> written = drive.legs(1, length_m);
+  if (written.empty()) return {};
+  std::vector<Candidate> candidates = {as_read(drive, length_m)};
   for (const double yaw_factor : kYawFactors)
     candidates.push_back(with_yaw_rates(yaw_factor, drive, length_m));
   if (!place) return candidates;
   for (const CoordinateSlip& slip : coordinate_slips()) {
     const Eigen::Matrix2d meant = mending(slip, *place);
-    std::vector<ChordPair> legs = as_read;
+    std::vector<ChordPair> legs = written;
     for (ChordPair& leg : legs) leg.gnss = meant * leg.gnss;
     candidates.push_back({{.slip = &slip}, differences_of(legs, 1)});
   }

@@ -71,9 +71,9 @@ std::string sign_of_turns(const std::vector<TurnPair>& turns) {
       correlation, count);
 }
 
-/// Finds wrong units of the speed. The product of both lengths ends a chord, so that the noise of the
-/// fixes of a slow vehicle does not.
-std::string large_factor(const ReckonedFixes& receiver) {
+/// Returns how many times the way of the odometry is that of the fixes. The product of both lengths ends a chord, so
+/// that the noise of the fixes of a slow vehicle does not.
+std::vector<double> way_factors(const ReckonedFixes& receiver) {
   constexpr double kChord_m = 20;
   constexpr double kOneSided_m = 100;
   constexpr double kLongest_s = 30;
@@ -85,9 +85,16 @@ std::string large_factor(const ReckonedFixes& receiver) {
   std::vector<double> factors;
   for (const ChordPair& chord : chords_of(receiver, kLongest_s, is_complete))
     factors.push_back(chord.odometry.norm() / std::max(1e-3, chord.gnss.norm()));
+  return factors;
+}
+
+/// Finds wrong units of the speed.
+std::string large_factor(const ReckonedFixes& receiver, std::optional<double>& found) {
+  const std::vector<double> factors = way_factors(receiver);
   if (factors.size() < kFewestChords) return {};
   const double factor = median_with_sigma(factors).value;
   if (!is_unusual(factor)) return {};
+  found = factor;
   return fmt::format(
       "the odometry's distance between fixes is {:.2f} times the distance of the fixes (median of {}); "
       "check the unit of the speed ({})",
@@ -97,9 +104,17 @@ std::string large_factor(const ReckonedFixes& receiver) {
                    "have few digits");
 }
 
+std::string words_for_scale(double factor, std::size_t chords, double sigma) {
+  return fmt::format(
+      "the odometry's distances are {:.3f} times those of the fixes (median of {}, sigma {:.3f}): its scale "
+      "is wrong beyond the prior of speed_scale; correct it, or state how well it is known (odometry: 'options: "
+      "{{speed_scale_sigma: {:.2g}}}', which is assumed if nothing is stated)",
+      factor, chords, sigma, std::abs(1 / factor - 1));
+}
+
 /// Finds an error of scale beyond the prior of `speed_scale`. The noise of fixes across a chord makes
 /// the chord longer by at most half the squared spread.
-std::string small_factor(const ReckonedFixes& receiver) {
+std::string small_factor(const ReckonedFixes& receiver, std::optional<double>& found) {
   constexpr double kChord_m = 100;
   constexpr double kLongest_s = 60;
   constexpr double kUsual = 0.03;  // three sigmas of the prior of speed_scale
@@ -112,11 +127,20 @@ std::string small_factor(const ReckonedFixes& receiver) {
   const Median factor = median_with_sigma(factors);
   const double uncertain = kSigmas * factor.sigma + 0.5 * factor.spread * factor.spread;
   if (std::abs(factor.value - 1) < kUsual + uncertain) return {};
-  return fmt::format(
-      "the odometry's distances are {:.3f} times those of the fixes (median of {}, sigma {:.3f}): its scale "
-      "is wrong beyond the prior of speed_scale, which holds the estimate back; correct the scale, or widen "
-      "the prior (odometry: 'options: {{speed_scale_sigma: 0.05}}')",
-      1 / factor.value, factors.size(), factor.sigma);
+  found = 1 / factor.value;
+  return words_for_scale(*found, factors.size(), factor.sigma);
+}
+
+/// Finds one on a drive that is too short for long chords.
+std::string rough_factor(const ReckonedFixes& receiver, std::optional<double>& found) {
+  constexpr double kWrong = 0.1;
+  constexpr double kSigmas = 3;
+  const std::vector<double> factors = way_factors(receiver);
+  if (factors.size() < kFewestChords) return {};
+  const Median factor = median_with_sigma(factors);
+  if (std::abs(std::log(factor.value)) < kWrong + kSigmas * factor.sigma / factor.value) return {};
+  found = factor.value;
+  return words_for_scale(*found, factors.size(), factor.sigma);
 }
 
 Shape shape_of(const ReckonedFixes& receiver) {
@@ -128,11 +152,13 @@ Shape shape_of(const ReckonedFixes& receiver) {
     shape.sentences.push_back(std::move(sign));
     shape.contradicts = true;
   }
-  if (std::string factor = large_factor(receiver); !factor.empty()) {
+  if (std::string factor = large_factor(receiver, shape.speed_factor); !factor.empty()) {
     shape.sentences.push_back(std::move(factor));
     shape.contradicts = true;
     shape.spoils_jumps = true;
-  } else if (factor = small_factor(receiver); !factor.empty()) {
+  } else if (factor = small_factor(receiver, shape.speed_factor); !factor.empty()) {
+    shape.sentences.push_back(std::move(factor));
+  } else if (factor = rough_factor(receiver, shape.speed_factor); !factor.empty()) {
     shape.sentences.push_back(std::move(factor));
   }
   return shape;
@@ -154,7 +180,7 @@ void name_slips(const ReckonedFixes& receiver, const GeodeticPoint& place, Shape
                          slip.mirrors ? "the sign of a longitude (W) or latitude (S) is lost" : slip.words);
   }
   if (words.empty()) return;
-  if (mirrors) {
+  if (mirrors || (shape.speed_factor && shape.sentences.size() == 1)) {
     shape.sentences.front() += ", unless " + words;
     return;
   }

@@ -39,6 +39,8 @@ struct Shape {
   std::vector<std::string> sentences;
   bool contradicts = false;   ///< a sign or a unit is wrong, which no prior allows
   bool spoils_jumps = false;  ///< jumps mean nothing then
+  /// of the odometry's distances, if it is significant and beyond the prior of speed_scale
+  std::optional<double> speed_factor{};
 };
 /// Compares turns and distances alone. @param fixes of one receiver @param antenna as above
 [[nodiscard]] Shape compare_shapes(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna);

@@ -36,7 +36,7 @@ bool takes_effect(const NoisePrior& prior, const std::vector<OptionInfo>& known,
 
 /// Adds options with a prior that are not stated.
 void add_parameters(const std::string& source, const std::string& owner, const std::vector<OptionInfo>& known,
-                    const Options& given, const ClaimedAccuracies& claimed,
+                    const Options& given, const ClaimedAccuracies& claimed, double reach,
                     std::vector<NoiseParameter>& parameters) {
   for (const OptionInfo& option : known) {
     if (!option.prior || given.contains(option.name)) continue;
@@ -49,20 +49,20 @@ void add_parameters(const std::string& source, const std::string& owner, const s
     parameter.unit = option.unit;
     parameter.range = std::get<OptionRange>(option.allowed);
     parameter.prior = prior_for(*option.prior, claimed.reference_m());
+    parameter.reach = parameter.prior.linear ? kUsualNoise : reach;
     place_at(0, parameter);
     parameters.push_back(std::move(parameter));
   }
 }
 
-/// A parameter may leave its prior as far as kNoiseReach says, but not what its option allows.
+/// A parameter may leave its prior as far as its reach says, but not what its option allows.
 PosteriorBounds bounds_of(const NoiseEstimate& noise) {
   const auto size = static_cast<Eigen::Index>(noise.parameters.size());
   PosteriorBounds bounds{Eigen::VectorXd(size), Eigen::VectorXd(size)};
   Eigen::Index i = 0;
   for (const NoiseParameter& parameter : noise.parameters) {
-    const double above = parameter.prior.linear ? kUsualNoise : kNoiseReach;
     bounds.low[i] = std::max(-kUsualNoise, coordinate_of(parameter.range.low, parameter.prior));
-    bounds.high[i] = std::min(above, coordinate_of(parameter.range.high, parameter.prior));
+    bounds.high[i] = std::min(parameter.reach, coordinate_of(parameter.range.high, parameter.prior));
     ++i;
   }
   return bounds;
@@ -182,17 +182,17 @@ NoiseEstimate open_parameters(const CoarseDrive& coarse, std::size_t count, bool
   const FusionSettings own = for_relative(settings, relative);
   const std::vector<OptionInfo>& known = registry.odometry_model(own.odometry_model).options;
   add_parameters(label(relative, count), own.odometry_model, known,
-                 with_calibration(own.odometry_options, own, known), {}, noise.parameters);
+                 with_calibration(own.odometry_options, own, known), {}, kNoiseReach, noise.parameters);
   if (!absolute) return noise;
   for (const AbsoluteGroup& group : facts.absolute) {
     const FusionSettings of = for_absolute(settings, group.name, registry);
     add_parameters(label(group.name, facts.absolute.size()), of.modeling,
                    registry.gnss_modeling(of.modeling).options, of.modeling_options, group.claimed,
-                   noise.parameters);
+                   kUsualNoise, noise.parameters);
   }
   for (const PreparedSensor& sensor : coarse.sensors)
     add_parameters(sensor.source, sensor.name, registry.sensor_model(sensor.name).options,
-                   options_of(sensor, settings), {}, noise.parameters);
+                   options_of(sensor, settings), {}, kUsualNoise, noise.parameters);
   return noise;
 }
 

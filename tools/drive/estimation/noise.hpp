@@ -18,8 +18,9 @@ namespace waymark::drive {
 
 /// A parameter further from its prior than this many deviations is not that of a sound drive.
 inline constexpr double kUsualNoise = 4;
-/// The search may leave the prior by this many deviations towards more noise: a gyro that is dead has 0.3 rad in a
-/// second, and is worth nothing only if that can be found. Towards less it ends at kUsualNoise.
+/// The search may leave the prior of an odometry by this many deviations towards more noise: a gyro that is dead has
+/// 0.3 rad in a second, and is worth nothing only if that can be found. Everything else ends at kUsualNoise: fixes
+/// that are hundreds of times worse than they claim would explain any odometry.
 inline constexpr double kNoiseReach = 8;
 
 /// The estimate of one option.
@@ -30,6 +31,7 @@ struct NoiseParameter {
   std::string unit;
   OptionRange range;  ///< what the option allows
   NoisePrior prior;
+  double reach = kUsualNoise;  ///< how many deviations of the prior above it the search ends
   double value = 0;
   /// Standard deviation of the posterior, in the form of the prior (of the logarithm, or linear),
   /// whatever the other parameters are. 0: not known yet

@@ -10,6 +10,7 @@
 
 #include <waymark/tools/drive/comparison/agreement.hpp>
 #include <waymark/tools/drive/comparison/constant_difference.hpp>
+#include <waymark/tools/drive/comparison/misreading.hpp>
 #include <waymark/tools/drive/comparison/plausibility.hpp>
 #include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/model/start_search.hpp>
@@ -169,10 +170,11 @@ void compare_with_fixes(const PreparedDrive& drive, std::span<const Eigen::Vecto
   if (const std::optional<Misreading> found =
           find_misreading(placed.timeline, placed.fixes, placed.standstill_mps, place)) {
     if (is_expected(*found, for_relative(settings, placed.odometry_name), registry)) return;
-    placed.misreading = found;
+    placed.misreading = found->sentence;
     placed.warnings.push_back(found->sentence);
     return;
   }
+  placed.speed_factor = compare_shapes(placed.fixes, antenna).speed_factor;
   const std::string of_several = drive.relative.empty() ? std::string() : drive.odometry_name;
   for (std::string& warning :
        compare_odometry_with_fixes(placed.fixes, antenna, place, placed.receivers, of_several))

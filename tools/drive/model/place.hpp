@@ -15,7 +15,6 @@
 #include <Eigen/Core>
 
 #include <waymark/core/registry/registry.hpp>
-#include <waymark/tools/drive/comparison/misreading.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/model/motion_runs.hpp>
@@ -43,7 +42,8 @@ struct PlacedDrive {
   double gap_noise_factor = 1;               ///< for the odometry model, from PreparedDrive::timeline
   std::vector<std::string> warnings;         ///< of the preparation; suspicious units, signs, jumps
   std::set<std::string> left_out{};          ///< names of sources that others contradict
-  std::optional<Misreading> misreading{};    ///< also a warning; Fusion::model() refuses such a drive
+  std::optional<double> speed_factor{};      ///< of the odometry, far from 1 (Shape::speed_factor)
+  std::string misreading{};                  ///< also a warning; Fusion::model() refuses such a drive
   std::optional<FirstPose> first_pose{};     ///< as PreparedDrive::first_pose
   /// what plugins may know of the whole drive; null: nothing
   std::shared_ptr<const DriveSurroundings> surroundings{};

@@ -21,6 +21,7 @@ struct Way {
   double speed_mps = 10;
   double turn_radps = 0.2;  ///< to and fro, for 5 s each
   double gyro_noise = 0;    ///< rad/sqrt(s)
+  double gyro_bias = 0;     ///< rad/s
   double fix_noise_m = 0;   ///< per axis
   int seconds = 200;
   unsigned seed = 1;
@@ -39,7 +40,7 @@ std::optional<Misreading> found(double speed_factor, double yaw_factor, const Wa
     const Stamp stamp = Stamp::from_seconds(0.1 * k);
     const double turn = k / 50 % 2 == 0 ? way.turn_radps : -way.turn_radps;
     const double noise = way.gyro_noise * std::sqrt(10) * normal(random);
-    odometry.push_back({stamp, way.speed_mps * speed_factor, (turn + noise) * yaw_factor});
+    odometry.push_back({stamp, way.speed_mps * speed_factor, (turn + way.gyro_bias + noise) * yaw_factor});
     if (k % 10 == 0) {
       Fix fix;
       fix.stamp = stamp;
@@ -88,11 +89,23 @@ TEST_CASE("misreading: the unit of the speed is named") {
   CHECK(found(3.6, 1)->speed_factor.value() == Approx(3.6).epsilon(1e-3));
 }
 
-TEST_CASE("misreading: a factor that is no unit is a matter of calibration") {
-  const std::optional<Misreading> twice = found(2.5, 1);
-  REQUIRE(twice);
-  CHECK(twice->speed_factor.value() == Approx(2.5).epsilon(1e-3));
-  CHECK_THAT(twice->sentence, Catch::Contains("'options: {speed_scale_sigma: 0.6}'"));
+TEST_CASE("misreading: a factor that is no unit is a matter of calibration, unless no odometry has it") {
+  for (const double factor : {0.5, 0.7, 0.8, 1.25, 1.33, 1.45, 1.7, 2.5}) {
+    INFO("factor " << factor);
+    CHECK_FALSE(found(factor, 1, {}, GeodeticPoint{48, 11}));
+  }
+  const std::optional<Misreading> large = found(6, 1);
+  REQUIRE(large);
+  CHECK(large->speed_factor.value() == Approx(6).epsilon(1e-3));
+  CHECK_THAT(large->sentence, Catch::Contains("'options: {speed_scale_sigma: 0.83}'"));
+}
+
+TEST_CASE("misreading: the bias of a gyro is no unit either") {
+  for (const double bias : {-0.1, 0.05, 0.1, 0.2}) {
+    INFO("bias " << bias);
+    CHECK_FALSE(found(1, 1, {.gyro_bias = bias}));
+  }
+  CHECK_THAT(sentence(1, -1, {.gyro_bias = 0.02}), Catch::Contains("'convention: cw'"));
 }
 
 TEST_CASE("misreading: unit and sense of the yaw rate are named, and with the speed") {

@@ -134,8 +134,9 @@ TEST_CASE("coordinates: odometry that fits only the mended fixes names the slip"
   REQUIRE(warnings(kExchanged).size() == 1);
   CHECK_THAT(warnings(kExchanged)[0], Contains("latitude and longitude are exchanged"));
   REQUIRE(warnings(kMinutes).size() == 1);
-  CHECK_THAT(warnings(kMinutes)[0], Contains("but it does if degrees and minutes are read as degrees"));
-  // A mirror has two reasons.
+  // A shorter way has two reasons, and a mirror too.
+  CHECK_THAT(warnings(kMinutes)[0], Contains("check the unit of the speed") &&
+                                        Contains("unless degrees and minutes are read as degrees"));
   REQUIRE(warnings(kNoWest).size() == 1);
   CHECK_THAT(warnings(kNoWest)[0],
              Contains("state 'convention: cw', unless ") && Contains("the sign of a longitude (W) or"));
