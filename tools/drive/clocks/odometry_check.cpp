@@ -144,7 +144,7 @@ void add_shape(const PreparedOdometry& source, const std::vector<Fix>& receiver,
   const Timeline timeline = build_timeline(source.samples, receiver, {.gap_s = source.gap_s});
   const std::vector<Eigen::Vector3d> poses = dead_reckon(timeline, Eigen::Vector3d::Zero(), kStands_mps);
   if (const auto misreading = find_misreading(timeline, receiver, kStands_mps, {})) {
-    verdict.sentences.push_back(source.name + ": " + misreading->sentence);
+    verdict.sentences.push_back(source.name + ": " + *misreading);
     verdict.contradicts = true;
     return;
   }
@@ -211,7 +211,13 @@ OdometryCheck check_odometries(const PreparedDrive& drive, const std::set<std::s
   std::vector<Fix> fixes = drive.fixes;
   std::erase_if(fixes, [](const Fix& fix) { return fix.status == FixStatus::withheld; });
   std::vector<Verdict> verdicts;
-  for (const PreparedOdometry& source : drive.relative) verdicts.push_back(verdict_on(source, fixes));
+  for (const PreparedOdometry& source : drive.relative) {
+    Verdict& verdict = verdicts.emplace_back(verdict_on(source, fixes));
+    const auto turns = drive.report.impossible_turns.find(source.name);
+    if (verdict.contradicts || turns == drive.report.impossible_turns.end()) continue;
+    verdict.contradicts = true;
+    verdict.sentences.push_back(source.name + ": " + turns->second);
+  }
   OdometryCheck check;
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
     Verdict& wrong = verdicts[i];

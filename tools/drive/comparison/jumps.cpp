@@ -283,13 +283,19 @@ bool turns_with_fixes(const ReckonedFixes& receiver) {
   constexpr double kLongest_s = 60;
   constexpr double kBend_rad = 0.5;
   constexpr std::size_t kFewest = 5;
+  const auto is_driven =
+      [](const ChordPair& leg) {  // jumps make the way of the fixes longer, bends make it shorter
+        const double ratio = leg.odometry.norm() / leg.gnss.norm();
+        return ratio > 0.9 && ratio < 1.6;
+      };
   std::size_t bends = 0;
   std::size_t followed = 0;
   const auto is_complete = [](const ChordPair& chord) { return chord.gnss.norm() >= kLeg_m; };
   const std::vector<ChordPair> legs = chords_of(receiver, kLongest_s, is_complete);
   for (std::size_t i = 1; i < legs.size(); ++i) {
     const double turn = angle_between(legs[i - 1].gnss, legs[i].gnss);
-    if (!legs[i].follows || std::abs(turn) < kBend_rad) continue;
+    if (!legs[i].follows || std::abs(turn) < kBend_rad || !is_driven(legs[i - 1]) || !is_driven(legs[i]))
+      continue;
     const double apart = wrap_angle(angle_between(legs[i - 1].odometry, legs[i].odometry) - turn);
     ++bends;
     followed += std::abs(apart) < 0.5 * std::abs(turn);

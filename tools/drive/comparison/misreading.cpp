@@ -20,11 +20,6 @@ namespace waymark::drive {
 namespace {
 
 constexpr double kDegreesOfRadian = 180 / std::numbers::pi;
-constexpr double kLargestUsual = 1.5;
-
-bool is_factor(double factor) {
-  return factor > kLargestUsual || factor < 1 / kLargestUsual;
-}
 
 /// A unit, and what is read where another one was meant.
 struct NamedFactor {
@@ -34,7 +29,8 @@ struct NamedFactor {
 constexpr std::array kSpeeds{NamedFactor{3.6, "km/h read as m/s: state 'unit: km/h' of the speed"},
                              NamedFactor{1 / 3.6, "m/s read as km/h: state 'unit: m/s' of the speed"},
                              NamedFactor{2.23694, "mph read as m/s: state 'unit: mph' of the speed"},
-                             NamedFactor{1.94384, "knots read as m/s: state 'unit: kn' of the speed"}};
+                             NamedFactor{1.94384, "knots read as m/s: state 'unit: kn' of the speed"},
+                             NamedFactor{1000, "mm/s read as m/s: state 'unit: mm/s' of the speed"}};
 /// Both wrong at once are units, not chance: what curls up is short, and fits a point.
 constexpr double kLargestUnit = 4;
 constexpr std::array kYawRates{
@@ -43,19 +39,16 @@ constexpr std::array kYawRates{
 
 /// Returns the words of the unit; null for a factor of none.
 const char* name_of(double factor, std::span<const NamedFactor> names) {
-  constexpr double kNear = 1.03;
+  constexpr double kNear = 1.02;
   for (const NamedFactor& name : names)
     if (factor < kNear * name.factor && factor > name.factor / kNear) return name.words;
   return nullptr;
 }
 
-/// A factor that is no unit is a matter of calibration.
 std::string words_for_speed(double factor) {
   const std::string words = fmt::format("speeds divided by {:.3g}", factor);
-  if (const char* unit = name_of(factor, kSpeeds)) return fmt::format("{} ({})", words, unit);
-  return fmt::format(
-      "{} (correct their scale, or state that it is not known: odometry: 'options: {{speed_scale_sigma: {:.2g}}}')",
-      words, std::abs(1 / factor - 1));
+  const char* unit = name_of(factor, kSpeeds);
+  return fmt::format("{} ({})", words, unit == nullptr ? "check their column and unit" : unit);
 }
 
 /// How the logs may have been meant.
@@ -63,6 +56,8 @@ struct Reading {
   double speed_factor = 1;  ///< as read, of what was meant
   double yaw_factor = 1;
   const CoordinateSlip* slip = nullptr;
+
+  [[nodiscard]] bool is_as_read() const { return slip == nullptr && speed_factor == 1 && yaw_factor == 1; }
 };
 
 std::string in_words(const Reading& reading) {
@@ -98,43 +93,51 @@ double bias_of(std::span<const ChordPair> legs) {
   return biases.size() < kFewest ? 0 : median_with_sigma(std::move(biases)).value;
 }
 
-/// The first receiver beside the odometry, as it was read and with other yaw rates.
+constexpr std::array kLegs_m = {20.0, 60.0, 180.0};
+using Legs = std::array<std::vector<ChordPair>, kLegs_m.size()>;
+
+/// The legs of a receiver beside those of the odometry, as it was read and with other yaw rates.
 class ReckonedDrive {
  public:
-  ReckonedDrive(const Timeline& timeline, std::span<const Fix> fixes, double standstill_mps) {
-    constexpr double kShort_m = 20;
-    const auto reckoned = [&](double factor, double bias_radps) {
-      Timeline other = timeline;
-      for (Interval& interval : other.intervals) {
-        if (interval.bridged) continue;  // by the motion of the fixes, which is in the right unit
-        interval.yaw_rate_radps = interval.yaw_rate_radps / factor - bias_radps;
-        interval.yaw_rate_change_radps /= factor;
-      }
-      const std::vector<Eigen::Vector3d> poses = dead_reckon(other, Eigen::Vector3d::Zero(), standstill_mps);
-      return of_receiver(fixes, antenna_at_fixes(other, poses, fixes), fixes.front().source);
-    };
-    for (const double factor : kYawFactors) receivers_[factor] = reckoned(factor, 0);
-    without_bias_ = reckoned(1, bias_of(legs(1, kShort_m)));
+  ReckonedDrive(const Timeline& timeline, std::span<const Fix> fixes, double standstill_mps)
+      : timeline_(timeline), fixes_(fixes), standstill_mps_(standstill_mps) {
+    for (const double factor : kYawFactors) legs_[factor] = reckoned(factor, 0);
+    without_bias_ = reckoned(1, bias_of(legs_.at(1).front()));
   }
 
-  /// Returns chords of a length between fixes.
-  [[nodiscard]] std::vector<ChordPair> legs(double yaw_factor, double length_m) const {
-    return legs(receivers_.at(yaw_factor), length_m);
+  /// @param length place in kLegs_m
+  [[nodiscard]] const std::vector<ChordPair>& legs(double yaw_factor, std::size_t length) const {
+    return legs_.at(yaw_factor)[length];
   }
   /// Returns those of the drive as it was read, less the bias of the gyro.
-  [[nodiscard]] std::vector<ChordPair> legs_without_bias(double length_m) const {
-    return legs(without_bias_, length_m);
+  [[nodiscard]] const std::vector<ChordPair>& legs_without_bias(std::size_t length) const {
+    return without_bias_[length];
   }
 
  private:
-  static std::vector<ChordPair> legs(const ReckonedFixes& receiver, double length_m) {
+  [[nodiscard]] Legs reckoned(double yaw_factor, double bias_radps) const {
     constexpr double kLongest_s = 30;
-    return chords_of(receiver, kLongest_s,
-                     [&](const ChordPair& chord) { return chord.gnss.norm() >= length_m; });
+    Timeline other = timeline_;
+    for (Interval& interval : other.intervals) {
+      if (interval.bridged) continue;  // by the motion of the fixes, which is in the right unit
+      interval.yaw_rate_radps = interval.yaw_rate_radps / yaw_factor - bias_radps;
+      interval.yaw_rate_change_radps /= yaw_factor;
+    }
+    const std::vector<Eigen::Vector3d> poses = dead_reckon(other, Eigen::Vector3d::Zero(), standstill_mps_);
+    const ReckonedFixes receiver =
+        of_receiver(fixes_, antenna_at_fixes(other, poses, fixes_), fixes_.front().source);
+    Legs legs;
+    for (std::size_t i = 0; i < legs.size(); ++i)
+      legs[i] = chords_of(receiver, kLongest_s,
+                          [&](const ChordPair& chord) { return chord.gnss.norm() >= kLegs_m[i]; });
+    return legs;
   }
 
-  std::map<double, ReckonedFixes> receivers_;  ///< by kYawFactors
-  ReckonedFixes without_bias_;
+  const Timeline& timeline_;
+  std::span<const Fix> fixes_;
+  double standstill_mps_;
+  std::map<double, Legs> legs_;  ///< by kYawFactors
+  Legs without_bias_;
 };
 
 /// By how much the turn from one leg to the next differs, in rad; infinite if their lengths do.
@@ -224,8 +227,8 @@ std::string in_words(std::span<const CoordinateSlip* const> slips) {
 /// Returns the candidate with which most pairs agree. A later one must make five more agree; coordinates that do
 /// as well are named with it.
 /// @param candidates the first one is the drive as it was read
-std::optional<Misreading> best_of(std::span<const Candidate> candidates, double length_m,
-                                  double tolerance_rad) {
+std::optional<std::string> best_of(std::span<const Candidate> candidates, double length_m,
+                                   double tolerance_rad) {
   constexpr std::size_t kMore = 5;
   if (candidates.empty()) return std::nullopt;
   const std::vector<double>& as_read = candidates.front().differences;
@@ -236,7 +239,7 @@ std::optional<Misreading> best_of(std::span<const Candidate> candidates, double 
   std::size_t agree = 0;
   std::vector<const CoordinateSlip*> as_good;
   for (const auto& [reading, differences] : candidates) {
-    if (!mends(as_read, differences, tolerance_rad)) continue;
+    if (reading.is_as_read() || !mends(as_read, differences, tolerance_rad)) continue;
     if (reading.yaw_factor != 1 && !turns_rightly(straight->differences, differences, tolerance_rad))
       continue;
     const std::size_t count = count_within(tolerance_rad, differences);
@@ -249,14 +252,10 @@ std::optional<Misreading> best_of(std::span<const Candidate> candidates, double 
     }
   }
   if (best == nullptr) return std::nullopt;
-  Misreading misreading{
-      fmt::format("the odometry does not fit the fixes ({} of {} pairs of legs of {:g} m agree), but it does "
-                  "({} agree) {}{}",
-                  count_within(tolerance_rad, as_read), as_read.size(), length_m, agree, in_words(*best),
-                  in_words(as_good)),
-      {}};
-  if (best->speed_factor != 1 && best->yaw_factor == 1) misreading.speed_factor = best->speed_factor;
-  return misreading;
+  return fmt::format(
+      "the odometry does not fit the fixes ({} of {} pairs of legs of {:g} m agree), but it does ({} agree) {}{}",
+      count_within(tolerance_rad, as_read), as_read.size(), length_m, agree, in_words(*best),
+      in_words(as_good));
 }
 
 /// Whether a factor of the speed is no unit, so that it is a matter of calibration.
@@ -264,39 +263,40 @@ bool is_calibration(double factor) {
   return name_of(factor, kSpeeds) == nullptr && factor < kLargestUnit && factor > 1 / kLargestUnit;
 }
 
-/// Returns the drive as it was read, with a scale and a bias of the gyro that no unit is to be blamed for.
-Candidate as_read(const ReckonedDrive& drive, double length_m) {
+/// Returns the differences of legs at their scale.
+std::vector<double> differences_at_scale(std::span<const ChordPair> legs) {
+  const double found = median_factor(legs);
+  return differences_of(legs, is_calibration(found) ? found : 1);
+}
+
+/// Returns the drive as it was read. A scale and a bias of the gyro are no unit's fault.
+Candidate as_read(const ReckonedDrive& drive, std::size_t length) {
   constexpr double kWide_rad = 0.3;
-  Candidate best;
-  for (const bool without_bias : {false, true}) {
-    const std::vector<ChordPair> legs =
-        without_bias ? drive.legs_without_bias(length_m) : drive.legs(1, length_m);
-    const double found = median_factor(legs);
-    std::vector<double> differences = differences_of(legs, is_calibration(found) ? found : 1);
-    if (!without_bias || count_within(kWide_rad, differences) > count_within(kWide_rad, best.differences))
+  Candidate best{{}, differences_of(drive.legs(1, length), 1)};
+  for (std::vector<double> differences :
+       {differences_at_scale(drive.legs(1, length)), differences_at_scale(drive.legs_without_bias(length))})
+    if (count_within(kWide_rad, differences) > count_within(kWide_rad, best.differences))
       best.differences = std::move(differences);
-  }
   return best;
 }
 
 /// Returns the differences with yaw rates divided by a factor, and speeds by that which then fits.
-Candidate with_yaw_rates(double yaw_factor, const ReckonedDrive& drive, double length_m) {
-  const std::vector<ChordPair> legs = drive.legs(yaw_factor, length_m);
+Candidate with_yaw_rates(double yaw_factor, const ReckonedDrive& drive, std::size_t length) {
+  const std::vector<ChordPair>& legs = drive.legs(yaw_factor, length);
   const double found = median_factor(legs);
-  const bool is_unit = yaw_factor == 1 ? !is_calibration(found)
-                                       : is_factor(found) && found < kLargestUnit && found > 1 / kLargestUnit;
+  if (is_calibration(found)) return {{1, yaw_factor}, differences_of(legs, found)};
+  const bool is_unit = yaw_factor == 1 || (found < kLargestUnit && found > 1 / kLargestUnit);
   const double speed_factor = is_unit ? found : 1;
   return {{speed_factor, yaw_factor}, differences_of(legs, speed_factor)};
 }
 
 /// Returns the drive as it was read, and as it may have been meant, the simplest first.
-std::vector<Candidate> candidates_for(const ReckonedDrive& drive, double length_m,
+std::vector<Candidate> candidates_for(const ReckonedDrive& drive, std::size_t length,
                                       const std::optional<GeodeticPoint>& place) {
-  const std::vector<ChordPair> written = drive.legs(1, length_m);
+  const std::vector<ChordPair>& written = drive.legs(1, length);
   if (written.empty()) return {};
-  std::vector<Candidate> candidates = {as_read(drive, length_m)};
-  for (const double yaw_factor : kYawFactors)
-    candidates.push_back(with_yaw_rates(yaw_factor, drive, length_m));
+  std::vector<Candidate> candidates = {as_read(drive, length)};
+  for (const double yaw_factor : kYawFactors) candidates.push_back(with_yaw_rates(yaw_factor, drive, length));
   if (!place) return candidates;
   for (const CoordinateSlip& slip : coordinate_slips()) {
     const Eigen::Matrix2d meant = mending(slip, *place);
@@ -309,14 +309,15 @@ std::vector<Candidate> candidates_for(const ReckonedDrive& drive, double length_
 
 }  // namespace
 
-std::optional<Misreading> find_misreading(const Timeline& timeline, std::span<const Fix> fixes,
-                                          double standstill_mps, const std::optional<GeodeticPoint>& place) {
+std::optional<std::string> find_misreading(const Timeline& timeline, std::span<const Fix> fixes,
+                                           double standstill_mps, const std::optional<GeodeticPoint>& place) {
   if (fixes.empty()) return std::nullopt;
   const ReckonedDrive drive(timeline, fixes, standstill_mps);
-  for (const double length_m : {20.0, 60.0, 180.0}) {
-    const std::vector<Candidate> candidates = candidates_for(drive, length_m, place);
+  for (std::size_t length = 0; length < kLegs_m.size(); ++length) {
+    const std::vector<Candidate> candidates = candidates_for(drive, length, place);
     for (const double tolerance_rad : {0.3, 0.15, 0.075})
-      if (std::optional<Misreading> found = best_of(candidates, length_m, tolerance_rad)) return found;
+      if (std::optional<std::string> found = best_of(candidates, kLegs_m[length], tolerance_rad))
+        return found;
   }
   return std::nullopt;
 }

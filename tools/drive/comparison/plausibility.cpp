@@ -108,13 +108,13 @@ std::string words_for_scale(double factor, std::size_t chords, double sigma) {
   return fmt::format(
       "the odometry's distances are {:.3f} times those of the fixes (median of {}, sigma {:.3f}): its scale "
       "is wrong beyond the prior of speed_scale; correct it, or state how well it is known (odometry: 'options: "
-      "{{speed_scale_sigma: {:.2g}}}', which is assumed if nothing is stated)",
+      "{{speed_scale_sigma: {:.2g}}}')",
       factor, chords, sigma, std::abs(1 / factor - 1));
 }
 
 /// Finds an error of scale beyond the prior of `speed_scale`. The noise of fixes across a chord makes
 /// the chord longer by at most half the squared spread.
-std::string small_factor(const ReckonedFixes& receiver, std::optional<double>& found) {
+std::string small_factor(const ReckonedFixes& receiver, std::optional<double>& found, bool& tells) {
   constexpr double kChord_m = 100;
   constexpr double kLongest_s = 60;
   constexpr double kUsual = 0.03;  // three sigmas of the prior of speed_scale
@@ -123,7 +123,8 @@ std::string small_factor(const ReckonedFixes& receiver, std::optional<double>& f
   std::vector<double> factors;
   for (const ChordPair& chord : chords_of(receiver, kLongest_s, is_complete))
     factors.push_back(chord.gnss.norm() / chord.odometry.norm());
-  if (factors.size() < kFewestChords) return {};
+  tells = factors.size() >= kFewestChords;
+  if (!tells) return {};
   const Median factor = median_with_sigma(factors);
   const double uncertain = kSigmas * factor.sigma + 0.5 * factor.spread * factor.spread;
   if (std::abs(factor.value - 1) < kUsual + uncertain) return {};
@@ -138,7 +139,9 @@ std::string rough_factor(const ReckonedFixes& receiver, std::optional<double>& f
   const std::vector<double> factors = way_factors(receiver);
   if (factors.size() < kFewestChords) return {};
   const Median factor = median_with_sigma(factors);
-  if (std::abs(std::log(factor.value)) < kWrong + kSigmas * factor.sigma / factor.value) return {};
+  const double spread = factor.spread / factor.value;
+  const double uncertain = kSigmas * factor.sigma / factor.value + 0.5 * spread * spread;
+  if (!(std::abs(std::log(factor.value)) > kWrong + uncertain)) return {};
   found = factor.value;
   return words_for_scale(*found, factors.size(), factor.sigma);
 }
@@ -148,6 +151,7 @@ Shape shape_of(const ReckonedFixes& receiver) {
   // Turns of another size distort all lengths, and lengths of another unit all differences of them.
   if (std::string size = size_of_turns(turns); !size.empty()) return {{std::move(size)}, true, true};
   Shape shape;
+  bool long_chords_tell = false;
   if (std::string sign = sign_of_turns(turns); !sign.empty()) {
     shape.sentences.push_back(std::move(sign));
     shape.contradicts = true;
@@ -156,9 +160,9 @@ Shape shape_of(const ReckonedFixes& receiver) {
     shape.sentences.push_back(std::move(factor));
     shape.contradicts = true;
     shape.spoils_jumps = true;
-  } else if (factor = small_factor(receiver, shape.speed_factor); !factor.empty()) {
+  } else if (factor = small_factor(receiver, shape.speed_factor, long_chords_tell); !factor.empty()) {
     shape.sentences.push_back(std::move(factor));
-  } else if (factor = rough_factor(receiver, shape.speed_factor); !factor.empty()) {
+  } else if (factor = long_chords_tell ? "" : rough_factor(receiver, shape.speed_factor); !factor.empty()) {
     shape.sentences.push_back(std::move(factor));
   }
   return shape;
@@ -257,12 +261,13 @@ Shape compare_shapes(std::span<const Fix> fixes, std::span<const Eigen::Vector3d
   return shape_of(of_receiver(fixes, antenna, fixes.front().source));
 }
 
-std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
-                                                     std::span<const Eigen::Vector3d> antenna,
-                                                     const std::optional<GeodeticPoint>& place,
-                                                     std::span<const std::string> receivers,
-                                                     const std::string& odometry) {
-  std::vector<std::string> warnings;
+ComparedWithFixes compare_odometry_with_fixes(std::span<const Fix> fixes,
+                                              std::span<const Eigen::Vector3d> antenna,
+                                              const std::optional<GeodeticPoint>& place,
+                                              std::span<const std::string> receivers,
+                                              const std::string& odometry) {
+  ComparedWithFixes compared;
+  std::vector<std::string>& warnings = compared.warnings;
   std::vector<Fix> live(fixes.begin(), fixes.end());
   std::vector<Eigen::Vector3d> reckoned(antenna.begin(), antenna.end());
   const std::vector<FrozenFixes> frozen = find_frozen_fixes(fixes, antenna);
@@ -275,19 +280,20 @@ std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
   const int first = fixes.empty() ? 0 : fixes.front().source;
   const ReckonedFixes receiver = of_receiver(live, reckoned, first);
   Shape shape = shape_of(receiver);
+  compared.speed_factor = shape.speed_factor;
   const std::vector<std::string> known = odometry.empty() ? std::vector<std::string>() : shape.sentences;
   if (place && !shape.sentences.empty()) name_slips(receiver, *place, shape);
   for (const std::string& sentence : shape.sentences)
     if (std::find(known.begin(), known.end(), sentence) == known.end())
       warnings.push_back((odometry.empty() ? "" : odometry + ": ") + sentence);
-  if (shape.spoils_jumps) return warnings;
+  if (shape.spoils_jumps) return compared;
   for (std::string& jump : jumps_in_words(receiver)) warnings.push_back(std::move(jump));
   for (int source = 0; source < std::ssize(receivers); ++source) {
     if (source == first) continue;
     for (const std::string& jump : jumps_in_words(of_receiver(live, reckoned, source)))
       warnings.push_back(receivers[static_cast<std::size_t>(source)] + ": " + jump);
   }
-  return warnings;
+  return compared;
 }
 
 }  // namespace waymark::drive

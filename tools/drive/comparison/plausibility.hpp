@@ -14,6 +14,11 @@
 
 namespace waymark::drive {
 
+struct ComparedWithFixes {
+  std::vector<std::string> warnings;
+  std::optional<double> speed_factor{};  ///< as Shape::speed_factor
+};
+
 /// Returns one sentence for each suspicious fact:
 /// - The turns have another size or sign than those of the fixes (at least 8 turns of 15 degrees).
 /// - The distances differ by a factor beyond 1.5 (median over at least 10 chords of about 20 m).
@@ -29,10 +34,11 @@ namespace waymark::drive {
 /// @param receivers names by Fix::source
 /// @param odometry its name, if it is one of several: its turns and distances were told before
 /// (odometry_check.hpp), and only what explains them otherwise is
-[[nodiscard]] std::vector<std::string> compare_odometry_with_fixes(
-    std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna,
-    const std::optional<GeodeticPoint>& place = {}, std::span<const std::string> receivers = {},
-    const std::string& odometry = {});
+[[nodiscard]] ComparedWithFixes compare_odometry_with_fixes(std::span<const Fix> fixes,
+                                                            std::span<const Eigen::Vector3d> antenna,
+                                                            const std::optional<GeodeticPoint>& place = {},
+                                                            std::span<const std::string> receivers = {},
+                                                            const std::string& odometry = {});
 
 /// What is wrong with turns and distances.
 struct Shape {

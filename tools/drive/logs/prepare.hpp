@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -72,6 +73,8 @@ struct PrepareReport {
   std::vector<std::string> notes;
   /// sentences about readings that contradict each other
   std::vector<std::string> warnings;
+  /// of odometries whose yaw rates no vehicle has, as if deg/s were read as rad/s: what to state, by name
+  std::map<std::string, std::string> impossible_turns{};
   std::set<std::string> left_out;  ///< names of odometries that the fixes contradict
   std::vector<std::string> corrupt_examples;
 };

@@ -138,18 +138,24 @@ void refuse_misreading(const PlacedDrive& placed) {
   throw InputError((placed.runs.empty() ? "" : placed.odometry_name + ": ") + placed.misreading);
 }
 
-/// Widens the prior of the scale of the speed, which is that of a sound odometry, to what the fixes show, unless it is
-/// stated.
-void adapt_to_scale(const PlacedDrive& placed, FusionSettings& decision, const TypeRegistry& registry) {
+/// Widens the prior of the scale of the odometry that gives the nodes, which is that of a sound one, to what the fixes
+/// show, unless it is stated.
+void adapt_to_scale(FusionSettings& decision, const TypeRegistry& registry, ModeledDrive& modeled) {
   constexpr const char* kPrior = "speed_scale_sigma";
-  if (!placed.speed_factor) return;
+  constexpr double kLargest = 4;  // beyond, it is no scale
+  const PlacedDrive& placed = modeled.placed;
+  const double factor = placed.speed_factor.value_or(1);
+  if (factor == 1 || factor > kLargest || factor < 1 / kLargest) return;
   const FusionSettings own = for_relative(decision, placed.odometry_name);
   const OdometryModelType& type = registry.odometry_model(own.odometry_model);
   if (!has_option(type.options, kPrior)) return;
   if (with_calibration(own.odometry_options, own, type.options).contains(kPrior)) return;
   const auto source = decision.sources.find(placed.odometry_name);
   Options& options = source == decision.sources.end() ? decision.odometry_options : source->second.options;
-  options[kPrior] = shortest(std::abs(1 / *placed.speed_factor - 1));
+  options[kPrior] = shortest(std::abs(1 / factor - 1));
+  modeled.notes.push_back(
+      fmt::format("{}speed_scale_sigma is taken as {:.2g}, because the distances differ by that",
+                  placed.runs.empty() ? "" : placed.odometry_name + ": ", std::abs(1 / factor - 1)));
 }
 
 /// Adapts the settings to the yaw rate of each relative source.
@@ -196,7 +202,7 @@ ModeledDrive Fusion::estimated(const FusionSettings& settings) {
   ModeledDrive modeled;
   FusionSettings decision = decision_on(settings);
   modeled.placed = placed(decision);
-  adapt_to_scale(modeled.placed, decision, registry_);
+  adapt_to_scale(decision, registry_, modeled);
   TimeOffsetSearch delays(modeled.placed, drive_.sensors, registry_, between_);
   const auto offsets = estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
   if (leave_out_delays(offsets, !settings.calibration, settings, decision, modeled))

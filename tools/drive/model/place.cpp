@@ -151,34 +151,64 @@ std::optional<GeodeticPoint> place_of(const PreparedDrive& drive) {
   return Projection(drive.frame).to_geodetic(drive.fixes.front().position);
 }
 
-/// Tells whether the prior of the scale reaches the factor that was found: then the calibration finds it too.
-bool is_expected(const Misreading& misreading, const FusionSettings& settings, const TypeRegistry& registry) {
-  constexpr const char* kPrior = "speed_scale_sigma";
-  constexpr double kReach = 3;  // sigmas
-  if (!misreading.speed_factor) return false;
-  const OdometryModelType& type = registry.odometry_model(settings.odometry_model);
-  if (!has_option(type.options, kPrior)) return false;
-  const CheckedOptions options(type.name, with_calibration(settings.odometry_options, settings, type.options),
-                               type.options);
-  return std::abs(1 / *misreading.speed_factor - 1) <= kReach * options.number(kPrior);
+void take_misreading(const std::string& sentence, PlacedDrive& placed) {
+  placed.misreading = sentence;
+  placed.warnings.push_back(sentence);
+}
+
+/// The fixes that may be used, their places in the timeline, and the antenna poses at them.
+struct ComparedFixes {
+  Timeline timeline;
+  std::vector<Fix> fixes;
+  std::vector<Eigen::Vector3d> antenna;
+};
+
+/// @param source of the receiver; negative: of all
+ComparedFixes without_withheld(const PlacedDrive& placed, std::span<const Eigen::Vector3d> antenna,
+                               int source) {
+  ComparedFixes compared;
+  compared.timeline = {placed.timeline.stamps, placed.timeline.intervals, {}};
+  for (std::size_t i = 0; i < placed.fixes.size(); ++i) {
+    const Fix& fix = placed.fixes[i];
+    if (fix.status == FixStatus::withheld || (source >= 0 && fix.source != source)) continue;
+    compared.timeline.fix_node.push_back(placed.timeline.fix_node[i]);
+    compared.fixes.push_back(fix);
+    compared.antenna.push_back(antenna[i]);
+  }
+  return compared;
+}
+
+/// Returns what all receivers say that can tell: one of them may be wrong itself.
+std::optional<std::string> misreading_of(const PlacedDrive& placed, std::span<const Eigen::Vector3d> antenna,
+                                         const std::optional<GeodeticPoint>& place) {
+  constexpr std::size_t kFewest = 30;
+  std::optional<std::string> misreading;
+  for (int source = 0; source < std::ssize(placed.time_offsets_s); ++source) {
+    const ComparedFixes of = without_withheld(placed, antenna, source);
+    if (of.fixes.size() < kFewest) continue;
+    const std::optional<std::string> found =
+        find_misreading(of.timeline, of.fixes, placed.standstill_mps, place);
+    if (!found) return std::nullopt;
+    if (!misreading) misreading = found;
+  }
+  return misreading;
 }
 
 /// Tells what is suspicious about the odometry beside the fixes. What is read wrong explains everything else.
 void compare_with_fixes(const PreparedDrive& drive, std::span<const Eigen::Vector3d> antenna,
-                        const FusionSettings& settings, const TypeRegistry& registry, PlacedDrive& placed) {
+                        PlacedDrive& placed) {
   const std::optional<GeodeticPoint> place = place_of(drive);
-  if (const std::optional<Misreading> found =
-          find_misreading(placed.timeline, placed.fixes, placed.standstill_mps, place)) {
-    if (is_expected(*found, for_relative(settings, placed.odometry_name), registry)) return;
-    placed.misreading = found->sentence;
-    placed.warnings.push_back(found->sentence);
-    return;
-  }
-  placed.speed_factor = compare_shapes(placed.fixes, antenna).speed_factor;
+  if (const std::optional<std::string> found = misreading_of(placed, antenna, place))
+    return take_misreading(*found, placed);
+  const auto& impossible = drive.report.impossible_turns;
+  if (const auto turns = impossible.find(drive.odometry_name); turns != impossible.end())
+    return take_misreading(turns->second, placed);
   const std::string of_several = drive.relative.empty() ? std::string() : drive.odometry_name;
-  for (std::string& warning :
-       compare_odometry_with_fixes(placed.fixes, antenna, place, placed.receivers, of_several))
-    placed.warnings.push_back(std::move(warning));
+  const ComparedFixes used = without_withheld(placed, antenna, -1);
+  ComparedWithFixes compared =
+      compare_odometry_with_fixes(used.fixes, used.antenna, place, placed.receivers, of_several);
+  placed.speed_factor = compared.speed_factor;
+  for (std::string& warning : compared.warnings) placed.warnings.push_back(std::move(warning));
 }
 
 }  // namespace
@@ -205,7 +235,7 @@ PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, co
       dead_reckon(timeline, Eigen::Vector3d::Zero(), placed.standstill_mps);
   const std::vector<Eigen::Vector3d> antenna = antenna_at_fixes(timeline, reckoned, placed.fixes);
   placed.warnings = drive.report.warnings;
-  compare_with_fixes(drive, antenna, settings, registry, placed);
+  compare_with_fixes(drive, antenna, placed);
   placed.gate = apply_gate(placed.fixes, antenna, gates_of(placed, settings, registry));
   require_accepted_fix(placed.gate);
   if (std::string warning = warning_of(placed.gate); !warning.empty())

@@ -26,9 +26,9 @@ constexpr std::array kDates{text_unit(kIso8601), text_unit("dmy"), text_unit("md
 constexpr std::array kSpeeds{Unit{"m/s", 1}, Unit{"km/h", 1 / 3.6}, Unit{"mph", 0.44704},
                              Unit{"kn", 1852 / 3600.0}, Unit{"mm/s", 1e-3}};
 constexpr std::array kRates{Unit{"rad/s", 1}, Unit{"deg/s", kDegree}};
-constexpr std::array kDegrees{Unit{"deg", 1}, Unit{"rad", 1 / kDegree}, Unit{"1e-7deg", 1e-7},
-                             Unit{"min", 1 / 60.0},
-                              Unit{"ddmm", 1, UnitForm::text}, Unit{"dms", 1, UnitForm::text}};
+constexpr std::array kDegrees{
+    Unit{"deg", 1},        Unit{"rad", 1 / kDegree},        Unit{"1e-7deg", 1e-7},
+    Unit{"min", 1 / 60.0}, Unit{"ddmm", 1, UnitForm::text}, Unit{"dms", 1, UnitForm::text}};
 constexpr std::array kLengths{Unit{"m", 1}, Unit{"cm", 1e-2}, Unit{"mm", 1e-3}};
 constexpr std::array kSigmas{Unit{"m", 1}, Unit{"cm", 1e-2}, Unit{"mm", 1e-3},
                              Unit{"m^2", 1, UnitForm::square}};
@@ -51,7 +51,8 @@ constexpr std::array kHeadingSenses{Convention{"ccw_from_east", 1, 0},
                                     Convention{"cw_from_north", -1, pi / 2}};
 
 // Times and flags are not parsed as bounded numbers. The limits of speed and yaw rate are generous
-// for a road vehicle. A number beyond them is garbage or has another unit.
+// for a road vehicle. A number beyond them is garbage or has another unit. Yaw rates may be those of deg/s read as
+// rad/s: preparation tells that from garbage, which single records cannot.
 constexpr Quantity kTime{"time", "time_s", true, kTimes, {}, -kInfinity, kInfinity};
 constexpr Quantity kDate{"date", "", false, kDates, {}, -kInfinity, kInfinity, true};
 constexpr Quantity kSpeed{"speed", "speed_mps", true, kSpeeds, {}, -150, 150};
@@ -66,7 +67,7 @@ constexpr Quantity kNorthing{"northing", "northing_m", false, kLengths, {}, -2e7
 constexpr Quantity kHeight{"height", "height_m", false, kLengths, {}, -12e3, 100e3};
 
 constexpr std::array kOdometry{kTime, kDate, kSpeed,
-                               Quantity{"yaw_rate", "yaw_rate_radps", true, kRates, kTurns, -20, 20}};
+                               Quantity{"yaw_rate", "yaw_rate_radps", true, kRates, kTurns, -1200, 1200}};
 constexpr std::array kGnss{
     kTime,
     kDate,
