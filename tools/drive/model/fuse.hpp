@@ -87,7 +87,7 @@ class Fusion {
   /// @throws errors of the steps
   [[nodiscard]] ModeledDrive estimated(const FusionSettings& settings);
   /// Does the steps up to the graph.
-  /// @throws InputError if the odometry or the positions were read in a wrong unit or sense (Misreading);
+  /// @throws InputError if the odometry or the positions were read in a wrong unit or sense (misreading.hpp);
   /// errors of the steps
   [[nodiscard]] ModeledDrive model(const FusionSettings& settings);
   /// Does all steps. @throws errors of the steps
