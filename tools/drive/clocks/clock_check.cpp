@@ -119,7 +119,6 @@ PreparedDrive without_contradicted(PreparedDrive drive, const DriveLogs& logs,
 
 /// Whether a second clock is the only reason that is left: a drive that was read wrong fits elsewhere by chance.
 bool is_another_clock(const PreparedDrive& drive, const ClockOffset& offset) {
-  constexpr double kStands_mps = 0.01;
   if (std::abs(offset.late_s) <= kOneClock_s) return false;
   return !find_misreading(build_timeline(drive.odometry, drive.fixes, drive.timeline), drive.fixes,
                           kStands_mps, {});

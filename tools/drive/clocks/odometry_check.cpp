@@ -140,14 +140,13 @@ std::optional<ClockOffset> far_offset(const std::vector<OdometrySample>& samples
 }
 
 void add_shape(const PreparedOdometry& source, const std::vector<Fix>& receiver, Verdict& verdict) {
-  constexpr double kStands_mps = 0.01;
   const Timeline timeline = build_timeline(source.samples, receiver, {.gap_s = source.gap_s});
-  const std::vector<Eigen::Vector3d> poses = dead_reckon(timeline, Eigen::Vector3d::Zero(), kStands_mps);
   if (const auto misreading = find_misreading(timeline, receiver, kStands_mps, {})) {
     verdict.sentences.push_back(source.name + ": " + *misreading);
     verdict.contradicts = true;
     return;
   }
+  const std::vector<Eigen::Vector3d> poses = dead_reckon(timeline, Eigen::Vector3d::Zero(), kStands_mps);
   const Shape shape = compare_shapes(receiver, antenna_at_fixes(timeline, poses, receiver));
   for (const std::string& sentence : shape.sentences)
     verdict.sentences.push_back(source.name + ": " + sentence);

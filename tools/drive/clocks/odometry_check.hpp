@@ -13,6 +13,9 @@
 
 namespace waymark::drive {
 
+/// A vehicle that is slower stands, in comparisons before an odometry model says what it calls so.
+inline constexpr double kStands_mps = 0.01;
+
 /// Returns the offset of the clock of an odometry, if it is late by 0.2 s or early by 0.3 s and more against every
 /// receiver whose motion tells, by about as much. If it fits one of them, the clock is that of another receiver.
 /// Withheld fixes do not count.

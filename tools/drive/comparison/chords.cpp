@@ -72,6 +72,10 @@ std::vector<ChordPair> chords_of(const ReckonedFixes& receiver, double longest_s
   return chords;
 }
 
+double turns_apart(const ChordPair& one, const ChordPair& next) {
+  return wrap_angle(angle_between(one.odometry, next.odometry) - angle_between(one.gnss, next.gnss));
+}
+
 std::vector<TurnPair> turns_of(std::span<const ChordPair> chords) {
   std::vector<TurnPair> turns;
   for (std::size_t i = 1; i < chords.size(); ++i) {

@@ -42,6 +42,10 @@ struct ChordPair {
 [[nodiscard]] std::vector<ChordPair> chords_of(const ReckonedFixes& receiver, double longest_s,
                                                const std::function<bool(const ChordPair&)>& is_complete);
 
+/// Returns by how much the odometry turns more than the fixes from one chord to the next, in (-pi, pi]: between the
+/// chords themselves, whatever the headings along them.
+[[nodiscard]] double turns_apart(const ChordPair& one, const ChordPair& next);
+
 /// A turn from one chord to the next.
 struct TurnPair {
   double gnss_rad = 0;      ///< in (-pi, pi]

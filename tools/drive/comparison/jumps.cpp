@@ -296,9 +296,8 @@ bool turns_with_fixes(const ReckonedFixes& receiver) {
     const double turn = angle_between(legs[i - 1].gnss, legs[i].gnss);
     if (!legs[i].follows || std::abs(turn) < kBend_rad || !is_driven(legs[i - 1]) || !is_driven(legs[i]))
       continue;
-    const double apart = wrap_angle(angle_between(legs[i - 1].odometry, legs[i].odometry) - turn);
     ++bends;
-    followed += std::abs(apart) < 0.5 * std::abs(turn);
+    followed += std::abs(turns_apart(legs[i - 1], legs[i])) < 0.5 * std::abs(turn);
   }
   return bends < kFewest || 2 * followed >= bends;
 }

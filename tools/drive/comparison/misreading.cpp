@@ -14,7 +14,6 @@
 
 #include <waymark/tools/drive/comparison/chords.hpp>
 #include <waymark/tools/drive/coordinates/coordinate_slips.hpp>
-#include <waymark/types_se2/se2.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -31,8 +30,6 @@ constexpr std::array kSpeeds{NamedFactor{3.6, "km/h read as m/s: state 'unit: km
                              NamedFactor{2.23694, "mph read as m/s: state 'unit: mph' of the speed"},
                              NamedFactor{1.94384, "knots read as m/s: state 'unit: kn' of the speed"},
                              NamedFactor{1000, "mm/s read as m/s: state 'unit: mm/s' of the speed"}};
-/// Both wrong at once are units, not chance: what curls up is short, and fits a point.
-constexpr double kLargestUnit = 4;
 constexpr std::array kYawRates{
     NamedFactor{kDegreesOfRadian, "deg/s read as rad/s: state 'unit: deg/s' of the yaw rate"},
     NamedFactor{1 / kDegreesOfRadian, "rad/s read as deg/s: state 'unit: rad/s' of the yaw rate"}};
@@ -76,11 +73,6 @@ constexpr double kNoTurns = std::numeric_limits<double>::infinity();
 /// What yaw rates may have to be divided by, the simplest first.
 constexpr std::array kYawFactors = {
     1.0, -1.0, kDegreesOfRadian, 1 / kDegreesOfRadian, -kDegreesOfRadian, -1 / kDegreesOfRadian, kNoTurns};
-
-/// Returns by how much the odometry turns more than the fixes from leg to leg, in rad.
-double turns_apart(const ChordPair& one, const ChordPair& next) {
-  return wrap_angle(angle_between(one.odometry, next.odometry) - angle_between(one.gnss, next.gnss));
-}
 
 /// Returns the bias of the yaw rate that the legs show in the median, rad/s; 0 for few.
 double bias_of(std::span<const ChordPair> legs) {
@@ -213,15 +205,7 @@ struct Candidate {
 
 /// Returns the words for slips of coordinates that explain the drive as well.
 std::string in_words(std::span<const CoordinateSlip* const> slips) {
-  std::string words;
-  bool mirrored = false;
-  for (const CoordinateSlip* slip : slips) {
-    if (slip->mirrors && mirrored) continue;  // north and south, east and west look alike
-    mirrored = mirrored || slip->mirrors;
-    words += fmt::format("{} {}", words.empty() ? ", unless" : " or",
-                         slip->mirrors ? "the sign of a longitude (W) or latitude (S) is lost" : slip->words);
-  }
-  return words;
+  return slips.empty() ? "" : fmt::format(", unless {}", fmt::join(words_of(slips), " or "));
 }
 
 /// Returns the candidate with which most pairs agree. A later one must make five more agree; coordinates that do
@@ -260,7 +244,7 @@ std::optional<std::string> best_of(std::span<const Candidate> candidates, double
 
 /// Whether a factor of the speed is no unit, so that it is a matter of calibration.
 bool is_calibration(double factor) {
-  return name_of(factor, kSpeeds) == nullptr && factor < kLargestUnit && factor > 1 / kLargestUnit;
+  return name_of(factor, kSpeeds) == nullptr && is_scale(factor);
 }
 
 /// Returns the differences of legs at their scale.
@@ -285,7 +269,8 @@ Candidate with_yaw_rates(double yaw_factor, const ReckonedDrive& drive, std::siz
   const std::vector<ChordPair>& legs = drive.legs(yaw_factor, length);
   const double found = median_factor(legs);
   if (is_calibration(found)) return {{1, yaw_factor}, differences_of(legs, found)};
-  const bool is_unit = yaw_factor == 1 || (found < kLargestUnit && found > 1 / kLargestUnit);
+  // Both wrong at once are units, not chance: what curls up is short, and fits a point.
+  const bool is_unit = yaw_factor == 1 || is_scale(found);
   const double speed_factor = is_unit ? found : 1;
   return {{speed_factor, yaw_factor}, differences_of(legs, speed_factor)};
 }

@@ -12,6 +12,12 @@
 
 namespace waymark::drive {
 
+/// Whether the speed may be wrong by a factor for want of calibration; beyond 4 it is read wrong.
+[[nodiscard]] inline bool is_scale(double factor) {
+  constexpr double kLargest = 4;
+  return factor < kLargest && factor > 1 / kLargest;
+}
+
 /// Finds the reading with which the odometry fits the fixes, if it does not as it was read: speeds in km/h,
 /// mph, kn or mm/s or with a factor beyond 4, yaw rates in deg/s or of the other sense, both, or one of
 /// coordinate_slips(). Each is dead-reckoned anew and compared along legs, that is chords of 20, 60 or 180 m of

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <waymark/tools/drive/comparison/chords.hpp>
 #include <waymark/tools/drive/comparison/frozen_fixes.hpp>
@@ -89,8 +90,8 @@ std::vector<double> way_factors(const ReckonedFixes& receiver) {
 }
 
 /// Finds wrong units of the speed.
-std::string large_factor(const ReckonedFixes& receiver, std::optional<double>& found) {
-  const std::vector<double> factors = way_factors(receiver);
+/// @param factors of way_factors()
+std::string large_factor(const std::vector<double>& factors, std::optional<double>& found) {
   if (factors.size() < kFewestChords) return {};
   const double factor = median_with_sigma(factors).value;
   if (!is_unusual(factor)) return {};
@@ -132,11 +133,10 @@ std::string small_factor(const ReckonedFixes& receiver, std::optional<double>& f
   return words_for_scale(*found, factors.size(), factor.sigma);
 }
 
-/// Finds one on a drive that is too short for long chords.
-std::string rough_factor(const ReckonedFixes& receiver, std::optional<double>& found) {
+/// Finds one on a drive that is too short for long chords. @param factors of way_factors()
+std::string rough_factor(const std::vector<double>& factors, std::optional<double>& found) {
   constexpr double kWrong = 0.1;
   constexpr double kSigmas = 3;
-  const std::vector<double> factors = way_factors(receiver);
   if (factors.size() < kFewestChords) return {};
   const Median factor = median_with_sigma(factors);
   const double spread = factor.spread / factor.value;
@@ -151,18 +151,19 @@ Shape shape_of(const ReckonedFixes& receiver) {
   // Turns of another size distort all lengths, and lengths of another unit all differences of them.
   if (std::string size = size_of_turns(turns); !size.empty()) return {{std::move(size)}, true, true};
   Shape shape;
+  const std::vector<double> ways = way_factors(receiver);
   bool long_chords_tell = false;
   if (std::string sign = sign_of_turns(turns); !sign.empty()) {
     shape.sentences.push_back(std::move(sign));
     shape.contradicts = true;
   }
-  if (std::string factor = large_factor(receiver, shape.speed_factor); !factor.empty()) {
+  if (std::string factor = large_factor(ways, shape.speed_factor); !factor.empty()) {
     shape.sentences.push_back(std::move(factor));
     shape.contradicts = true;
     shape.spoils_jumps = true;
   } else if (factor = small_factor(receiver, shape.speed_factor, long_chords_tell); !factor.empty()) {
     shape.sentences.push_back(std::move(factor));
-  } else if (factor = long_chords_tell ? "" : rough_factor(receiver, shape.speed_factor); !factor.empty()) {
+  } else if (factor = long_chords_tell ? "" : rough_factor(ways, shape.speed_factor); !factor.empty()) {
     shape.sentences.push_back(std::move(factor));
   }
   return shape;
@@ -171,19 +172,19 @@ Shape shape_of(const ReckonedFixes& receiver) {
 /// Looks for slips without which nothing is wrong, and names them. A mirror is only one of two reasons
 /// for turns of the other sense.
 void name_slips(const ReckonedFixes& receiver, const GeodeticPoint& place, Shape& shape) {
-  std::string words;
+  std::vector<const CoordinateSlip*> found;
   bool mirrors = false;
   for (const CoordinateSlip& slip : coordinate_slips()) {
-    if (mirrors && slip.mirrors) continue;  // north and south, east and west look alike
+    if (mirrors && slip.mirrors) continue;
     const Eigen::Matrix2d meant = mending(slip, place);
     ReckonedFixes mended = receiver;
     for (Fix& fix : mended.fixes) fix.position = meant * fix.position;
     if (!shape_of(mended).sentences.empty()) continue;
     mirrors = mirrors || slip.mirrors;
-    words += fmt::format("{}{}", words.empty() ? "" : ", or ",
-                         slip.mirrors ? "the sign of a longitude (W) or latitude (S) is lost" : slip.words);
+    found.push_back(&slip);
   }
-  if (words.empty()) return;
+  if (found.empty()) return;
+  const std::string words = fmt::format("{}", fmt::join(words_of(found), ", or "));
   if (mirrors || (shape.speed_factor && shape.sentences.size() == 1)) {
     shape.sentences.front() += ", unless " + words;
     return;

@@ -97,6 +97,17 @@ std::span<const CoordinateSlip> coordinate_slips() {
   return kSlips;
 }
 
+std::vector<std::string> words_of(std::span<const CoordinateSlip* const> slips) {
+  std::vector<std::string> words;
+  bool mirrored = false;
+  for (const CoordinateSlip* slip : slips) {
+    if (slip->mirrors && mirrored) continue;
+    mirrored = mirrored || slip->mirrors;
+    words.emplace_back(slip->mirrors ? "the sign of a longitude (W) or latitude (S) is lost" : slip->words);
+  }
+  return words;
+}
+
 Eigen::Matrix2d mending(const CoordinateSlip& slip, const GeodeticPoint& at) {
   constexpr double kStep_deg = 1e-6;
   const GeodeticPoint here = slip.mended(at);

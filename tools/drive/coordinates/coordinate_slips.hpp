@@ -24,6 +24,9 @@ struct CoordinateSlip {
 /// The slips that are known.
 [[nodiscard]] std::span<const CoordinateSlip> coordinate_slips();
 
+/// Returns the words of slips. Mirrors are told once: north and south, east and west look alike to an odometry.
+[[nodiscard]] std::vector<std::string> words_of(std::span<const CoordinateSlip* const> slips);
+
 /// Returns what a slip does to short ways: meant = M * written, in metres east and north.
 /// @param at where, as written
 [[nodiscard]] Eigen::Matrix2d mending(const CoordinateSlip& slip, const GeodeticPoint& at);

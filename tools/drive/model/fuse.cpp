@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/detail/median.hpp>
+#include <waymark/tools/drive/comparison/misreading.hpp>
 #include <waymark/tools/drive/estimation/latency.hpp>
 #include <waymark/tools/drive/estimation/noise_spread.hpp>
 #include <waymark/tools/drive/model/build.hpp>
@@ -142,10 +143,9 @@ void refuse_misreading(const PlacedDrive& placed) {
 /// show, unless it is stated.
 void adapt_to_scale(FusionSettings& decision, const TypeRegistry& registry, ModeledDrive& modeled) {
   constexpr const char* kPrior = "speed_scale_sigma";
-  constexpr double kLargest = 4;  // beyond, it is no scale
   const PlacedDrive& placed = modeled.placed;
   const double factor = placed.speed_factor.value_or(1);
-  if (factor == 1 || factor > kLargest || factor < 1 / kLargest) return;
+  if (factor == 1 || !is_scale(factor)) return;
   const FusionSettings own = for_relative(decision, placed.odometry_name);
   const OdometryModelType& type = registry.odometry_model(own.odometry_model);
   if (!has_option(type.options, kPrior)) return;

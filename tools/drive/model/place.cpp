@@ -156,38 +156,30 @@ void take_misreading(const std::string& sentence, PlacedDrive& placed) {
   placed.warnings.push_back(sentence);
 }
 
-/// The fixes that may be used, their places in the timeline, and the antenna poses at them.
-struct ComparedFixes {
-  Timeline timeline;
-  std::vector<Fix> fixes;
-  std::vector<Eigen::Vector3d> antenna;
-};
-
-/// @param source of the receiver; negative: of all
-ComparedFixes without_withheld(const PlacedDrive& placed, std::span<const Eigen::Vector3d> antenna,
-                               int source) {
-  ComparedFixes compared;
-  compared.timeline = {placed.timeline.stamps, placed.timeline.intervals, {}};
-  for (std::size_t i = 0; i < placed.fixes.size(); ++i) {
-    const Fix& fix = placed.fixes[i];
-    if (fix.status == FixStatus::withheld || (source >= 0 && fix.source != source)) continue;
-    compared.timeline.fix_node.push_back(placed.timeline.fix_node[i]);
-    compared.fixes.push_back(fix);
-    compared.antenna.push_back(antenna[i]);
-  }
-  return compared;
+/// Returns what was given for each fix, of those that a condition selects.
+template <typename Value, typename Condition>
+std::vector<Value> of_selected(std::span<const Fix> fixes, std::span<const Value> values,
+                               Condition is_selected) {
+  std::vector<Value> selected;
+  for (std::size_t i = 0; i < fixes.size(); ++i)
+    if (is_selected(fixes[i])) selected.push_back(values[i]);
+  return selected;
 }
 
 /// Returns what all receivers say that can tell: one of them may be wrong itself.
-std::optional<std::string> misreading_of(const PlacedDrive& placed, std::span<const Eigen::Vector3d> antenna,
+std::optional<std::string> misreading_of(const PlacedDrive& placed,
                                          const std::optional<GeodeticPoint>& place) {
   constexpr std::size_t kFewest = 30;
   std::optional<std::string> misreading;
+  Timeline timeline = placed.timeline;
   for (int source = 0; source < std::ssize(placed.time_offsets_s); ++source) {
-    const ComparedFixes of = without_withheld(placed, antenna, source);
-    if (of.fixes.size() < kFewest) continue;
-    const std::optional<std::string> found =
-        find_misreading(of.timeline, of.fixes, placed.standstill_mps, place);
+    const auto is_of_source = [&](const Fix& fix) {
+      return fix.status != FixStatus::withheld && fix.source == source;
+    };
+    const std::vector<Fix> fixes = of_selected<Fix>(placed.fixes, placed.fixes, is_of_source);
+    if (fixes.size() < kFewest) continue;
+    timeline.fix_node = of_selected<std::size_t>(placed.fixes, placed.timeline.fix_node, is_of_source);
+    const std::optional<std::string> found = find_misreading(timeline, fixes, placed.standstill_mps, place);
     if (!found) return std::nullopt;
     if (!misreading) misreading = found;
   }
@@ -198,15 +190,16 @@ std::optional<std::string> misreading_of(const PlacedDrive& placed, std::span<co
 void compare_with_fixes(const PreparedDrive& drive, std::span<const Eigen::Vector3d> antenna,
                         PlacedDrive& placed) {
   const std::optional<GeodeticPoint> place = place_of(drive);
-  if (const std::optional<std::string> found = misreading_of(placed, antenna, place))
+  if (const std::optional<std::string> found = misreading_of(placed, place))
     return take_misreading(*found, placed);
   const auto& impossible = drive.report.impossible_turns;
   if (const auto turns = impossible.find(drive.odometry_name); turns != impossible.end())
     return take_misreading(turns->second, placed);
   const std::string of_several = drive.relative.empty() ? std::string() : drive.odometry_name;
-  const ComparedFixes used = without_withheld(placed, antenna, -1);
-  ComparedWithFixes compared =
-      compare_odometry_with_fixes(used.fixes, used.antenna, place, placed.receivers, of_several);
+  const auto is_used = [](const Fix& fix) { return fix.status != FixStatus::withheld; };
+  ComparedWithFixes compared = compare_odometry_with_fixes(
+      of_selected<Fix>(placed.fixes, placed.fixes, is_used),
+      of_selected<Eigen::Vector3d>(placed.fixes, antenna, is_used), place, placed.receivers, of_several);
   placed.speed_factor = compared.speed_factor;
   for (std::string& warning : compared.warnings) placed.warnings.push_back(std::move(warning));
 }
