@@ -154,6 +154,7 @@ PlacedDrive without_course(const PlacedDrive& placed) {
   PlacedDrive result;
   result.surroundings = placed.surroundings;
   result.first_pose = placed.first_pose;
+  result.start.follows_fixes = placed.start.follows_fixes;
   result.gate = placed.gate;
   result.receivers = placed.receivers;
   result.time_offsets_s = placed.time_offsets_s;

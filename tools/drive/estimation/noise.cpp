@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <waymark/core/base/error.hpp>
@@ -76,10 +77,12 @@ PosteriorCost cost_of(NoiseObjective& objective, NoiseEstimate& noise) {
           [&] { objective.stay(); }};
 }
 
+/// In deviations of a prior.
+constexpr double kFar = 2.5;
+
 /// Returns where to begin once more: where parameters have left their priors far behind, the others lost
 /// their way with them, and begin again at their priors. Empty if none has.
 std::optional<Eigen::VectorXd> second_start(const Eigen::VectorXd& found) {
-  constexpr double kFar = 2.5;
   if (found.cwiseAbs().maxCoeff() < kFar) return {};
   return (found.array().abs() < kFar).select(0, found);
 }
@@ -102,6 +105,31 @@ void minimize(NoiseObjective& objective, NoiseEstimate& noise) {
   }
   place_at(mode.at, noise);
   noise.curvature = mode.curvature;
+}
+
+/// Begins with an odometry that is worth little: one of its parameters, or all, are far beyond their priors,
+/// whichever costs least. @returns the cost
+double begin_with_poor_odometry(NoiseObjective& objective, NoiseEstimate& noise) {
+  constexpr double kPoor = 7;  // deviations
+  std::vector<std::size_t> poor;
+  for (std::size_t i = 0; i < noise.parameters.size(); ++i)
+    if (noise.parameters[i].reach > kPoor) poor.push_back(i);
+  std::vector<std::vector<std::size_t>> ways = {poor};
+  if (poor.size() > 1)
+    for (const std::size_t one : poor) ways.push_back({one});
+  NoiseEstimate best = noise;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::vector<std::size_t>& way : ways) {
+    NoiseEstimate there = noise;
+    for (NoiseParameter& parameter : there.parameters) place_at(0, parameter);
+    for (const std::size_t i : way) place_at(kPoor, there.parameters[i]);
+    const double cost = objective.at(there);
+    if (!(cost < least)) continue;
+    least = cost;
+    best = there;
+  }
+  noise = best;
+  return least;
 }
 
 /// What is estimated together: the parameters of one relative source, with those of the absolute ones if
@@ -201,6 +229,7 @@ void append(const NoiseEstimate& part, NoiseEstimate& noise) {
   if (!part.spread.empty()) noise.spread = part.spread;
   noise.parameters.insert(noise.parameters.end(), part.parameters.begin(), part.parameters.end());
   noise.evaluations += part.evaluations;
+  noise.cost += part.cost;
   const Eigen::Index before = noise.curvature.rows();
   const auto size = static_cast<Eigen::Index>(noise.parameters.size());
   Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(size, size);
@@ -255,16 +284,43 @@ std::vector<Options*> options_with(const NoiseParameter& parameter, FusionSettin
 
 }  // namespace
 
+bool NoiseEstimate::odometry_is_poor() const {
+  return std::any_of(parameters.begin(), parameters.end(), [](const NoiseParameter& of) {
+    return of.reach > kUsualNoise && coordinate_of(of.value, of.prior) > kUsualNoise;
+  });
+}
+
 NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                              const FusionSettings& settings, const TypeRegistry& registry,
                              const NoiseEstimate& near, const std::function<void()>& between) {
   return visit_parts(placed, sensors, settings, registry, [&](Part& part) {
     NoiseObjective objective(part.coarse, part.settings, registry, between);
     take_known(near, part.noise);
-    if (part.noise.curvature.size() == 0) begin_with_piece(part, registry, between, objective, part.noise);
+    const bool is_new = part.noise.curvature.size() == 0;
+    if (is_new && placed.start.follows_fixes && part.has_absolute)
+      (void)begin_with_poor_odometry(objective, part.noise);
+    else if (is_new)
+      begin_with_piece(part, registry, between, objective, part.noise);
     minimize(objective, part.noise);
+    part.noise.cost = objective.at(part.noise);
     part.noise.evaluations = objective.evaluations();
   });
+}
+
+bool may_be_poor_odometry(const PlacedDrive& along, std::span<const PreparedSensor> sensors,
+                          const FusionSettings& settings, const TypeRegistry& registry,
+                          const NoiseEstimate& noise) {
+  constexpr double kOfEachFix = 2.5;
+  if (coordinates_of(noise).maxCoeff() > kFar) return true;
+  double rise = -noise.cost;
+  std::size_t fixes = 0;
+  visit_parts(along, sensors, settings, registry, [&](Part& part) {
+    NoiseObjective objective(part.coarse, part.settings, registry, {});
+    take_known(noise, part.noise);
+    rise += part.has_absolute ? begin_with_poor_odometry(objective, part.noise) : objective.at(part.noise);
+    if (part.has_absolute) fixes = part.coarse.drive.fixes.size();
+  });
+  return rise < kOfEachFix * static_cast<double>(fixes);
 }
 
 void find_deviations(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,

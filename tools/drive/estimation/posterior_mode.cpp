@@ -66,13 +66,16 @@ void follow_to(const Quadratic& next, Quadratic& fit) {
 struct Search {
   const PosteriorCost& cost;
   nlopt_opt slsqp = nullptr;
+  double least = std::numeric_limits<double>::infinity();
   Quadratic followed{};
   std::exception_ptr thrown{};  // by the cost: it must not fly through code in C
 };
 
 void evaluate_here(Search& search, Quadratic& there, bool with_gradient) {
   there.cost = search.cost.at(there.centre, with_gradient ? &there.gradient : nullptr);
-  if (search.cost.stay) search.cost.stay();
+  // A first step may leap to the bounds, where the poses may have another minimum for good.
+  if (search.cost.stay && there.cost < search.least) search.cost.stay();
+  search.least = std::min(search.least, there.cost);
   if (!with_gradient) return;
   if (search.followed.centre.size() > 0) return follow_to(there, search.followed);
   search.followed = there;

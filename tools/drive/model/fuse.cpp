@@ -47,10 +47,13 @@ LeftUnknown left_unknown(const TimeOffset& offset, const AbsoluteGroup& group, c
   return {way_m, way_m / upper_median(std::move(accuracies))};
 }
 
-/// Takes the fixes of a group as measured when their stamps say. An offset that is not needed costs RTK
-/// fixes at 30 m/s a decimetre.
-void leave_out(const TimeOffset& offset, const AbsoluteGroup& group, FusionSettings& settings,
-               ModeledDrive& modeled) {
+/// Returns what follows the name of a source in a note, if there are several.
+std::string of_several(const AbsoluteGroup& group, const ModeledDrive& modeled) {
+  return modeled.placed.receivers.size() > 1 ? group.name + ": " : std::string();
+}
+
+/// Takes the fixes of a group as measured when their stamps say.
+void leave_out(const AbsoluteGroup& group, FusionSettings& settings, ModeledDrive& modeled) {
   if (modeled.placed.receivers.size() > 1 || settings.sources.contains(group.name)) {
     settings.sources[group.name].options[kTimeOffset] = "off";
     modeled.without_delay.push_back(group.name);
@@ -60,17 +63,20 @@ void leave_out(const TimeOffset& offset, const AbsoluteGroup& group, FusionSetti
     modeled.without_delay.emplace_back();
   }
   for (const int source : group.sources) modeled.placed.time_offsets_s[static_cast<std::size_t>(source)] = 0;
+}
+
+/// Says what the drive knows of a delay that is left out.
+std::string note_of(const TimeOffset& offset, const AbsoluteGroup& group, const ModeledDrive& modeled) {
   const LeftUnknown unknown = left_unknown(offset, group, modeled.placed);
-  modeled.notes.push_back(fmt::format(
+  return fmt::format(
       "{}the fixes are taken as not late: the drive says {:.3f} +- {:.3f} s, odds of {:.3g} to 1 for no delay{}",
-      modeled.placed.receivers.size() > 1 ? group.name + ": " : std::string(), offset.value_s, offset.sigma_s,
-      offset.odds_of_none(),
+      of_several(group, modeled), offset.value_s, offset.sigma_s, offset.odds_of_none(),
       unknown.of_accuracy <= 1
           ? std::string()
           : fmt::format(
                 "; it hardly tells: if they may be late, '--calibrate on' adds the {:.2g} m along the way "
                 "that this leaves open to the covariances",
-                unknown.way_m)));
+                unknown.way_m));
 }
 
 /// Finds the delay of the fixes, and the noise if it is estimated: each depends on the other.
@@ -88,20 +94,44 @@ std::vector<std::optional<TimeOffset>> estimate(const FusionSettings& settings,
   return delays.find(modeled.settings, modeled.placed);
 }
 
-/// Leaves out the delays that the drive gives no better odds than their priors, unless they are stated.
-/// @param by_default the calibration of the drive was not stated
+/// Tells whether the delay of a group may be left out, because nobody stated how it is found.
+bool is_delay_open(const AbsoluteGroup& group, const FusionSettings& stated) {
+  if (stated.calibration || stated.modeling_options.contains(kTimeOffset)) return false;
+  const auto own = stated.sources.find(group.name);
+  return own == stated.sources.end() ||
+         (!own->second.options.contains(kTimeOffset) && !own->second.calibration.contains(kTimeOffset));
+}
+
+/// Leaves out the delays that the drive gives no better odds than their priors, unless they are stated: an offset
+/// that is not needed costs RTK fixes at 30 m/s a decimetre.
 /// @returns whether there was one
-bool leave_out_delays(const std::vector<std::optional<TimeOffset>>& offsets, bool by_default,
-                      const FusionSettings& stated, FusionSettings& decision, ModeledDrive& modeled) {
-  if (!by_default || stated.modeling_options.contains(kTimeOffset)) return false;
+bool leave_out_improbable(const std::vector<std::optional<TimeOffset>>& offsets, const FusionSettings& stated,
+                          FusionSettings& decision, ModeledDrive& modeled) {
   const std::vector<AbsoluteGroup> groups = groups_of(modeled.placed, decision);
   bool any = false;
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    const auto own = stated.sources.find(groups[g].name);
-    const bool is_stated = own != stated.sources.end() && (own->second.options.contains(kTimeOffset) ||
-                                                           own->second.calibration.contains(kTimeOffset));
-    if (is_stated || !offsets[g] || offsets[g]->odds_of_none() <= 1) continue;
-    leave_out(*offsets[g], groups[g], decision, modeled);
+    if (!is_delay_open(groups[g], stated) || !offsets[g] || offsets[g]->odds_of_none() <= 1) continue;
+    leave_out(groups[g], decision, modeled);
+    modeled.notes.push_back(note_of(*offsets[g], groups[g], modeled));
+    any = true;
+  }
+  return any;
+}
+
+/// Leaves out the delays that nobody stated: an odometry that is worth little moves the fixes along the way as it
+/// likes. @returns whether there was one
+bool leave_out_unseen(const FusionSettings& stated, FusionSettings& decision, ModeledDrive& modeled) {
+  const std::vector<std::string> before = modeled.without_delay;
+  bool any = false;
+  for (const AbsoluteGroup& group : groups_of(modeled.placed, decision)) {
+    const bool is_left_out = std::any_of(before.begin(), before.end(), [&](const std::string& name) {
+      return name.empty() || name == group.name;
+    });
+    if (is_left_out || !is_delay_open(group, stated)) continue;
+    leave_out(group, decision, modeled);
+    modeled.notes.push_back(
+        of_several(group, modeled) +
+        "the fixes are taken as not late: an odometry that is worth so little cannot tell");
     any = true;
   }
   return any;
@@ -171,6 +201,13 @@ void adapt(const PreparedDrive& drive, bool by_default, FusionSettings& decision
   }
 }
 
+std::string words_for_poor_odometry(const PlacedDrive& placed) {
+  return (placed.runs.empty() ? "" : placed.odometry_name + ": ") +
+         std::string(
+             "the odometry does not move as the fixes do (a gyro that is dead, wheels that slip, a wrong "
+             "scale): it is given little weight, and the result follows the fixes");
+}
+
 }  // namespace
 
 std::vector<std::string> ModeledDrive::warnings() const {
@@ -198,17 +235,45 @@ FusionSettings Fusion::decision_on(const FusionSettings& settings) const {
   return decision;
 }
 
-ModeledDrive Fusion::estimated(const FusionSettings& settings) {
+ModeledDrive Fusion::estimated_from(PlacedDrive placed, const FusionSettings& settings) {
   ModeledDrive modeled;
   FusionSettings decision = decision_on(settings);
-  modeled.placed = placed(decision);
+  modeled.placed = std::move(placed);
   adapt_to_scale(decision, registry_, modeled);
+  if (modeled.placed.start.follows_fixes) (void)leave_out_unseen(settings, decision, modeled);
   TimeOffsetSearch delays(modeled.placed, drive_.sensors, registry_, between_);
   const auto offsets = estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
-  if (leave_out_delays(offsets, !settings.calibration, settings, decision, modeled))
-    (void)estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
-  if (!modeled.noise.parameters.empty())
-    find_deviations(modeled.placed, drive_.sensors, decision, registry_, modeled.noise, between_);
+  const bool left_out = modeled.noise.odometry_is_poor()
+                            ? leave_out_unseen(settings, decision, modeled)
+                            : leave_out_improbable(offsets, settings, decision, modeled);
+  if (left_out) (void)estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
+  modeled.decision = std::move(decision);
+  return modeled;
+}
+
+std::optional<ModeledDrive> Fusion::along_fixes(const PlacedDrive& usual, const FusionSettings& settings,
+                                                const ModeledDrive& modeled) {
+  constexpr double kClearly = 1;
+  constexpr double kOfAnother = 10;  // less is the same minimum without a delay
+  if (usual.fixes.empty() || settings.initial_guess != StartOptions()) return std::nullopt;
+  PlacedDrive along = usual;
+  along.start = start_along_fixes(along.timeline, along.fixes, along.standstill_mps);
+  if (!may_be_poor_odometry(along, drive_.sensors, modeled.decision, registry_, modeled.noise))
+    return std::nullopt;
+  ModeledDrive other = estimated_from(std::move(along), settings);
+  const double gain = modeled.noise.cost - other.noise.cost;
+  if (!(gain > (other.noise.odometry_is_poor() ? kClearly : kOfAnother))) return std::nullopt;
+  return other;
+}
+
+ModeledDrive Fusion::estimated(const FusionSettings& settings) {
+  const PlacedDrive& usual = placed(decision_on(settings));
+  ModeledDrive modeled = estimated_from(usual, settings);
+  if (modeled.noise.parameters.empty()) return modeled;
+  if (std::optional<ModeledDrive> other = along_fixes(usual, settings, modeled)) modeled = std::move(*other);
+  if (modeled.noise.odometry_is_poor())
+    modeled.placed.warnings.push_back(words_for_poor_odometry(modeled.placed));
+  find_deviations(modeled.placed, drive_.sensors, modeled.decision, registry_, modeled.noise, between_);
   return modeled;
 }
 

@@ -44,6 +44,7 @@ namespace waymark::drive {
 /// A drive with one error model, at its initial guess.
 struct ModeledDrive {
   FusionSettings settings;  ///< from decided(), with the estimated noise among the options
+  FusionSettings decision;  ///< the same without the estimated noise
   PlacedDrive placed;       ///< nodes, gate, initial guess
   NoiseEstimate noise;      ///< without parameters if the noise is as stated
   std::vector<std::string> sensor_warnings;
@@ -106,6 +107,11 @@ class Fusion {
   };
   [[nodiscard]] FusionSettings decision_on(const FusionSettings& settings) const;
   [[nodiscard]] const PlacedDrive& placed(const FusionSettings& settings);
+  [[nodiscard]] ModeledDrive estimated_from(PlacedDrive placed, const FusionSettings& settings);
+  /// Returns the drive with a start along the fixes, if that is more probable: the odometry is then worth little.
+  [[nodiscard]] std::optional<ModeledDrive> along_fixes(const PlacedDrive& usual,
+                                                        const FusionSettings& settings,
+                                                        const ModeledDrive& modeled);
 
   const PreparedDrive& drive_;
   const TypeRegistry& registry_;

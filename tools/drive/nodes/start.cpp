@@ -99,9 +99,10 @@ struct Drive {
   std::vector<Anchor> anchors;
 };
 
-std::vector<HeadingWindow> windows_along(const Drive& drive, std::span<const double> headings) {
+std::vector<HeadingWindow> windows_along(const Drive& drive, std::span<const double> headings,
+                                         const Windows& how = {}) {
   const auto poses = integrate_along(drive.timeline, headings, drive.standstill_mps);
-  return align_windows(drive.anchors, poses);
+  return align_windows(drive.anchors, poses, how);
 }
 
 /// Estimates the gyro bias: first the reading at standstill, then twice the remaining slope of the
@@ -119,15 +120,14 @@ void add(std::vector<double>& values, std::span<const double> more) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] += more[i];
 }
 
-/// Bends the headings by the smoothed offsets of the windows. Returns the number of windows. The
-/// second bend works on stretches that the first one has straightened.
-std::size_t bend(const Drive& drive, std::vector<double>& headings) {
+/// Bends the headings by the smoothed offsets of the windows. Returns the number of windows.
+std::size_t bend(const Drive& drive, const Windows& how, std::vector<double>& headings) {
   std::size_t count = 0;
-  for (int pass = 0; pass < 2; ++pass) {
-    auto windows = windows_along(drive, headings);
+  for (int pass = 0; pass < how.bends; ++pass) {
+    auto windows = windows_along(drive, headings, how);
     if (windows.empty()) break;
-    unwrap_offsets(windows);
-    add(headings, evaluate(smooth_offsets(windows), drive.moving_s));
+    unwrap_offsets(windows, how);
+    add(headings, evaluate(smooth_offsets(windows, how), drive.moving_s));
     count = windows.size();
   }
   return count;
@@ -203,6 +203,30 @@ Knots translation(const Drive& drive, std::span<const Eigen::Vector3d> poses, in
   return knots;
 }
 
+/// Returns poses along the odometry, bent onto the anchors.
+Start bent_start(const Timeline& timeline, std::span<const Fix> fixes, double standstill_mps,
+                 const Windows& how) {
+  require_fix(timeline, fixes);
+  Drive drive{timeline, fixes, standstill_mps, moving_time(timeline, standstill_mps), {}};
+  drive.anchors = collect_anchors(timeline, fixes, drive.moving_s);
+
+  Start start;
+  start.gyro_bias_radps = estimate_bias(drive);
+  std::vector<double> headings = odometry_headings(timeline, start.gyro_bias_radps, standstill_mps);
+  start.windows = bend(drive, how, headings);
+  if (start.windows == 0) start.note = turn_as_a_whole(drive, headings);
+
+  start.poses = integrate_along(timeline, headings, standstill_mps);
+  const auto dx = evaluate(translation(drive, start.poses, 0), drive.moving_s);
+  const auto dy = evaluate(translation(drive, start.poses, 1), drive.moving_s);
+  for (std::size_t i = 0; i < start.poses.size(); ++i) {
+    start.poses[i][0] += dx[i];
+    start.poses[i][1] += dy[i];
+  }
+  wrap_headings(start.poses);
+  return start;
+}
+
 void turn_about_first(double first_heading_rad, std::vector<Eigen::Vector3d>& poses) {
   const Eigen::Vector3d first = poses.front();
   const double turn = first_heading_rad - first[2];
@@ -236,24 +260,14 @@ Start dead_reckoning_start(const Timeline& timeline, std::span<const Fix> fixes,
 }
 
 Start anchored_start(const Timeline& timeline, std::span<const Fix> fixes, double standstill_mps) {
-  require_fix(timeline, fixes);
-  Drive drive{timeline, fixes, standstill_mps, moving_time(timeline, standstill_mps), {}};
-  drive.anchors = collect_anchors(timeline, fixes, drive.moving_s);
+  return bent_start(timeline, fixes, standstill_mps, {});
+}
 
-  Start start;
-  start.gyro_bias_radps = estimate_bias(drive);
-  std::vector<double> headings = odometry_headings(timeline, start.gyro_bias_radps, standstill_mps);
-  start.windows = bend(drive, headings);
-  if (start.windows == 0) start.note = turn_as_a_whole(drive, headings);
-
-  start.poses = integrate_along(timeline, headings, standstill_mps);
-  const auto dx = evaluate(translation(drive, start.poses, 0), drive.moving_s);
-  const auto dy = evaluate(translation(drive, start.poses, 1), drive.moving_s);
-  for (std::size_t i = 0; i < start.poses.size(); ++i) {
-    start.poses[i][0] += dx[i];
-    start.poses[i][1] += dy[i];
-  }
-  wrap_headings(start.poses);
+Start start_along_fixes(const Timeline& timeline, std::span<const Fix> fixes, double standstill_mps) {
+  constexpr Windows kClose = {
+      .length_s = 8, .step_s = 2, .least_spread_m = 2, .before = 1, .beside = 0, .bends = 3};
+  Start start = bent_start(timeline, fixes, standstill_mps, kClose);
+  start.follows_fixes = true;
   return start;
 }
 

@@ -36,7 +36,8 @@ struct Start {
   double gyro_bias_radps = 0;
   /// alignments that the heading is based on (0: a fallback was used, see note)
   std::size_t windows = 0;
-  std::string note;  ///< facts that the data could not provide; empty if there are none
+  bool follows_fixes = false;  ///< that of start_along_fixes(): the odometry may be worth nothing
+  std::string note;            ///< facts that the data could not provide; empty if there are none
 };
 
 /// The initial guess of the paper: odometry integrated from the first accepted fix. The heading is
@@ -57,6 +58,12 @@ struct Start {
 /// deterministic. Parameters and errors are those of dead_reckoning_start.
 [[nodiscard]] Start anchored_start(const Timeline& timeline, std::span<const Fix> fixes,
                                    double standstill_mps);
+
+/// As anchored_start, for an odometry that may not turn as the vehicle does: windows of 8 s, so that headings
+/// follow the fixes from one to the next, and the odometry only between them. With a sound odometry it is the
+/// worse one, because each heading has the errors of a few fixes.
+[[nodiscard]] Start start_along_fixes(const Timeline& timeline, std::span<const Fix> fixes,
+                                      double standstill_mps);
 
 /// Returns the initial guess that the options choose.
 [[nodiscard]] Start make_start(const Timeline& timeline, std::span<const Fix> fixes, double standstill_mps,

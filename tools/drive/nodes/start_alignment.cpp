@@ -12,15 +12,11 @@ namespace waymark::drive::start_detail {
 namespace {
 
 constexpr double kMinStandstill = 5;    // s, for a bias
-constexpr double kMinSpread = 15;       // m, of a window
-constexpr double kWindow = 40;          // s of moving time
-constexpr double kStep = 10;            // s of moving time
 constexpr std::size_t kMinAnchors = 3;  // of a window
 constexpr double kMaxMisfit = 0.3;      // median residual over spread
 constexpr double kResidualFloor = 1;    // m: limits the weight of a window
 constexpr double kReweightFloor = 0.5;  // m: shorter distances count alike
 constexpr int kReweightings = 20;
-constexpr std::size_t kSmoothingHalf = 2;  // windows on either side
 
 Eigen::Vector2d weighted_mean(std::span<const Eigen::Vector2d> points, std::span<const double> weights) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -63,15 +59,15 @@ double spread_of(std::span<const Eigen::Vector2d> points) {
 }
 
 /// Returns the length of a window. Rare fixes need longer ones: the time of about five of them.
-double window_length(std::span<const Anchor> anchors) {
+double window_length(std::span<const Anchor> anchors, double usual_s) {
   std::vector<double> spacing;
   for (std::size_t i = 1; i < anchors.size(); ++i)
     spacing.push_back(anchors[i].moving_s - anchors[i - 1].moving_s);
-  return spacing.empty() ? kWindow : std::max(kWindow, 5 * upper_median(std::move(spacing)));
+  return spacing.empty() ? usual_s : std::max(usual_s, 5 * upper_median(std::move(spacing)));
 }
 
 std::optional<HeadingWindow> align_window(std::span<const Anchor> anchors,
-                                          std::span<const Eigen::Vector3d> poses) {
+                                          std::span<const Eigen::Vector3d> poses, double least_spread_m) {
   if (anchors.size() < kMinAnchors) return std::nullopt;
   std::vector<Eigen::Vector2d> from;
   std::vector<Eigen::Vector2d> to;
@@ -81,7 +77,8 @@ std::optional<HeadingWindow> align_window(std::span<const Anchor> anchors,
     to.push_back(anchor.gnss);
   }
   const std::optional<Alignment> fit = align_robustly(from, to);
-  if (!fit || fit->spread_m < kMinSpread || fit->residual_m > kMaxMisfit * fit->spread_m) return std::nullopt;
+  if (!fit || fit->spread_m < least_spread_m || fit->residual_m > kMaxMisfit * fit->spread_m)
+    return std::nullopt;
   const double noise = std::hypot(fit->residual_m, kResidualFloor);
   return HeadingWindow{.moving_s = 0.5 * (anchors.front().moving_s + anchors.back().moving_s),
                        .offset_rad = fit->rotation_rad,
@@ -196,18 +193,18 @@ std::optional<Alignment> align_robustly(std::span<const Eigen::Vector2d> from,
 }
 
 std::vector<HeadingWindow> align_windows(std::span<const Anchor> anchors,
-                                         std::span<const Eigen::Vector3d> poses) {
+                                         std::span<const Eigen::Vector3d> poses, const Windows& how) {
   std::vector<HeadingWindow> windows;
   if (anchors.empty()) return windows;
-  const double length = window_length(anchors);
-  const double step = length * kStep / kWindow;
+  const double length = window_length(anchors, how.length_s);
+  const double step = length * how.step_s / how.length_s;
   std::size_t first = 0;
   std::size_t last = 0;  // one past the last anchor of the window
   for (double from = anchors.front().moving_s; first < anchors.size(); from += step) {
     while (first < anchors.size() && anchors[first].moving_s < from) ++first;
     last = std::max(last, first);
     while (last < anchors.size() && anchors[last].moving_s < from + length) ++last;
-    const auto window = align_window(anchors.subspan(first, last - first), poses);
+    const auto window = align_window(anchors.subspan(first, last - first), poses, how.least_spread_m);
     // Two windows over the same anchors (around a gap) would count the same vote twice.
     if (window && (windows.empty() || window->moving_s > windows.back().moving_s)) windows.push_back(*window);
     if (last == anchors.size() && from + step + 0.5 * length > anchors.back().moving_s) break;
@@ -229,7 +226,7 @@ double median_slope(std::span<const HeadingWindow> windows, double apart_s) {
   return weighted_median(slopes);
 }
 
-void unwrap_offsets(std::span<HeadingWindow> windows) {
+void unwrap_offsets(std::span<HeadingWindow> windows, const Windows& how) {
   if (windows.empty()) return;
   const auto heavier = [](const HeadingWindow& a, const HeadingWindow& b) { return a.weight < b.weight; };
   const auto best = std::max_element(windows.begin(), windows.end(), heavier);
@@ -238,7 +235,8 @@ void unwrap_offsets(std::span<HeadingWindow> windows) {
   for (const std::ptrdiff_t direction : {std::ptrdiff_t{1}, std::ptrdiff_t{-1}}) {
     for (std::ptrdiff_t k = start + direction; k >= 0 && k < count; k += direction) {
       std::vector<std::pair<double, double>> before;
-      for (std::ptrdiff_t b = k - direction; before.size() < 5 && b >= 0 && b < count; b -= direction) {
+      for (std::ptrdiff_t b = k - direction; before.size() < how.before && b >= 0 && b < count;
+           b -= direction) {
         const HeadingWindow& window = windows[static_cast<std::size_t>(b)];
         before.emplace_back(window.offset_rad, window.weight);
         if (b == start) break;
@@ -249,11 +247,11 @@ void unwrap_offsets(std::span<HeadingWindow> windows) {
   }
 }
 
-Knots smooth_offsets(std::span<const HeadingWindow> windows) {
+Knots smooth_offsets(std::span<const HeadingWindow> windows, const Windows& how) {
   Knots knots;
   for (std::size_t k = 0; k < windows.size(); ++k) {
-    const std::size_t first = k < kSmoothingHalf ? 0 : k - kSmoothingHalf;
-    const std::size_t last = std::min(k + kSmoothingHalf, windows.size() - 1);
+    const std::size_t first = k < how.beside ? 0 : k - how.beside;
+    const std::size_t last = std::min(k + how.beside, windows.size() - 1);
     std::vector<std::pair<double, double>> near;
     for (std::size_t i = first; i <= last; ++i) near.emplace_back(windows[i].offset_rad, windows[i].weight);
     knots.at.push_back(windows[k].moving_s);

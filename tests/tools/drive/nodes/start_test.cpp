@@ -273,6 +273,25 @@ TEST_CASE("start: the paper's start lies on the first accepted fix along its fir
         course.poses);
 }
 
+TEST_CASE("start: headings follow the fixes where the gyro is dead") {
+  // laps of two straight ways and two half circles, with every yaw rate lost
+  const Motion laps = [](double t) -> std::pair<double, double> {
+    const double phase = std::fmod(t, 28);
+    return {10, phase < 7 || (phase >= 14 && phase < 21) ? 0 : std::numbers::pi / 7};
+  };
+  SyntheticDrive drive = simulate(laps, {.duration_s = 400, .fix_sigma_m = 0.5});
+  for (Interval& interval : drive.timeline.intervals) interval.yaw_rate_radps = 0;
+  const auto misses_rad = [&](const Start& start) {
+    std::vector<double> misses;
+    for (std::size_t i = 0; i < drive.truth.size(); ++i)
+      misses.push_back(std::abs(wrap_angle(start.poses[i][2] - drive.truth[i][2])));
+    std::nth_element(misses.begin(), misses.begin() + std::ssize(misses) * 9 / 10, misses.end());
+    return misses[static_cast<std::size_t>(std::ssize(misses) * 9 / 10)];
+  };
+  CHECK(misses_rad(start_along_fixes(drive.timeline, drive.fixes, kStandstill)) < 0.5);
+  CHECK(misses_rad(drive.anchored()) > 1);
+}
+
 TEST_CASE("start: without an accepted fix there is no start") {
   SyntheticDrive drive = simulate(city(true), {});
   for (Fix& fix : drive.fixes) fix.status = FixStatus::rejected;
