@@ -7,6 +7,7 @@
 #include <waymark/core/base/detail/elapsed.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/optimize/multi_start.hpp>
+#include <waymark/core/system/gauge.hpp>
 
 namespace waymark {
 namespace {
@@ -111,6 +112,7 @@ class MultiStart {
 
   MultiStartSummary result_;
   std::vector<double> file_values_;
+  std::vector<double> best_from_;  // where the best run began
   std::vector<double> best_values_;
   std::vector<std::string> notes_;  // about starts that could not be computed or used
   std::vector<std::string> tried_;
@@ -164,7 +166,9 @@ void MultiStart::try_from(std::string_view start, const std::vector<double>& val
   result_.summary = std::move(summary);
   result_.start = start;
   const bool only_one = first && !refusal_ && settled();
-  if (!only_one) best_values_ = graph_.values();
+  if (only_one) return;
+  best_from_ = values;
+  best_values_ = graph_.values();
 }
 
 void MultiStart::choose_first() {
@@ -191,14 +195,19 @@ void MultiStart::try_others() {
   }
 }
 
-/// Finishes the best run, which may have been cut short.
+/// Finishes the best run, which may have been cut short. The gauge is that of its beginning: on the way landmarks that
+/// are only seen may be so far that the edges seem to say nothing about them.
 void MultiStart::finish_best() {
   if (result_.summary.termination != Termination::max_iterations || iterations_left() <= 0) return;
   Summary& best = result_.summary;
+  graph_.set_values(best_from_);
+  StructuredSolver kept{solver_};
+  kept.build(graph_, find_gauge(graph_).held);
   graph_.set_values(best_values_);
   OptimizerOptions options = options_;
   options.max_iterations = iterations_left();
-  Summary rest = optimize(graph_, algorithm_, solver_, options);
+  Summary rest = optimize(graph_, kept, algorithm_, options);
+  rest.notes.insert(rest.notes.begin(), best.notes.begin(), best.notes.end());
   // The two parts become one run.
   for (IterationRecord& record : rest.records) record.iteration += best.iterations;
   rest.records.insert(rest.records.begin(), best.records.begin(), best.records.end());

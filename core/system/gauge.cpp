@@ -46,10 +46,25 @@ std::vector<std::int32_t> find_components(const Graph& graph) {
   return parent;
 }
 
+/// Returns how a rigid motion about a centre moves a vertex: its tangent by x, y and the turn (at the extent).
+Eigen::MatrixXd motion_of(const Graph& graph, VertexIndex v, const RigidMotionView::Place& place) {
+  const VertexType& type = graph.vertex_type(v);
+  Eigen::MatrixXd motion(type.tangent_size, 3);
+  type.rigid_motion(graph.value(v).data(), place.centre, place.extent, motion.data());
+  return motion;
+}
+
+/// Tells whether a turn about the place of a vertex changes it: a pose, but no point.
+bool turns_about_itself(const Graph& graph, VertexIndex v) {
+  const RigidMotionView::Place here{graph.vertex_type(v).position(graph.value(v).data()), 1.0};
+  return !motion_of(graph, v, here).col(2).isZero(0);
+}
+
 /// The components of the vertices that a rigid motion moves.
 struct Components {
   std::vector<std::int32_t> of;    // per vertex; -1: the vertex is fixed or does not move
   std::vector<VertexIndex> first;  // first vertex with edges
+  std::vector<VertexIndex> pose;   // first vertex that a turn about itself changes; -1: all are points
   std::vector<int> count;          // vertices that move
   std::vector<RigidMotionView::Place> places;
 };
@@ -70,12 +85,15 @@ Components describe_components(const Graph& graph) {
     if (component < 0) {
       component = static_cast<std::int32_t>(result.first.size());
       result.first.push_back(vertex);
+      result.pose.push_back(-1);
       result.count.push_back(0);
       boxes.emplace_back();
     }
     result.of[v] = component;
     ++result.count[at(component)];
-    boxes[at(component)].extend(type.position(graph.values().data() + graph.offsets()[v]));
+    boxes[at(component)].extend(type.position(graph.value(vertex).data()));
+    if (result.pose[at(component)] < 0 && turns_about_itself(graph, vertex))
+      result.pose[at(component)] = vertex;
   }
   // The extent is at least a metre. In a smaller component a turn would only turn its poses.
   for (const Eigen::AlignedBox2d& box : boxes) {
@@ -135,10 +153,7 @@ int rank_of_directions(const Graph& graph, const Components& components, std::in
       Eigen::MatrixXd terms = moved;
       for (std::size_t k = 0; k < vertices.size(); ++k) {
         if (!is_moved(vertices[k])) continue;
-        Eigen::MatrixXd motion(jacobians[k].cols(), 3);
-        graph.vertex_type(vertices[k])
-            .rigid_motion(graph.values().data() + graph.offsets()[at(vertices[k])], place.centre,
-                          place.extent, motion.data());
+        const Eigen::MatrixXd motion = motion_of(graph, vertices[k], place);
         moved += jacobians[k] * motion;
         terms += jacobians[k].cwiseAbs() * motion.cwiseAbs();
       }
@@ -152,9 +167,38 @@ int rank_of_directions(const Graph& graph, const Components& components, std::in
   return rank_of(directions, 1);
 }
 
-std::string anchored_in_part(const Graph& graph, VertexIndex v, int rank) {
-  return "vertex " + to_string(graph.id(v)) + " and the vertices joined to it are anchored in only " +
-         std::to_string(rank) + " of 3 rigid motions";
+/// One component, as the gauge judges it.
+struct Judged {
+  VertexIndex first = -1;
+  VertexIndex holds = -1;  ///< what would be held
+  bool has_pose = false;   ///< among its vertices
+  int count = 0;           ///< vertices
+  int motions = 3;         ///< rigid ones that change it
+  int rank = 0;            ///< of those that the edges observe
+
+  [[nodiscard]] bool is_anchored() const { return rank >= motions; }
+  /// Tells whether it still turns with a vertex held: all are points.
+  [[nodiscard]] bool would_turn() const { return motions == 3 && !has_pose; }
+};
+
+Judged judge(const Graph& graph, const Components& components, std::size_t c,
+             const Eigen::Matrix3d& information, double unit) {
+  Judged judged;
+  judged.first = components.first[c];
+  judged.has_pose = components.pose[c] >= 0;
+  judged.holds = judged.has_pose ? components.pose[c] : judged.first;
+  judged.count = components.count[c];
+  if (!judged.has_pose && judged.count == 1) judged.motions = 2;
+  judged.rank = rank_of(information, unit);
+  if (judged.rank != 0 && !judged.is_anchored())
+    judged.rank = rank_of_directions(graph, components, static_cast<std::int32_t>(c));
+  return judged;
+}
+
+std::string anchored_in_part(const Graph& graph, const Judged& judged) {
+  return "vertex " + to_string(graph.id(judged.first)) +
+         " and the vertices joined to it are anchored in only " + std::to_string(judged.rank) + " of " +
+         std::to_string(judged.motions) + " rigid motions";
 }
 
 /// Holds the first vertex of each part of poses that are not of the plane, if only edges between vertices
@@ -186,10 +230,24 @@ void hold_foreign_poses(const Graph& graph, Gauge& gauge) {
   }
 }
 
-[[noreturn]] void refuse(const Graph& graph, VertexIndex v, int rank) {
-  throw InputError(anchored_in_part(graph, v, rank) +
-                   ", so the solution is not determined (typical: a single GNSS fix, or fixes "
-                   "at one place); add fixes at another place or a heading, or FIX one vertex");
+/// @throws InputError for one whose solution is not determined whatever is held
+void refuse(const Graph& graph, const Judged& judged) {
+  if (judged.rank > 0)
+    throw InputError(anchored_in_part(graph, judged) +
+                     ", so the solution is not determined (typical: a single GNSS fix, or fixes "
+                     "at one place); add fixes at another place or a heading, or FIX one vertex");
+  if (judged.would_turn())
+    throw InputError("nothing anchors vertex " + to_string(graph.id(judged.first)) + " and the " +
+                     std::to_string(judged.count - 1) +
+                     " vertices joined to it, which are all points: with one of them FIXed they still turn "
+                     "about it; FIX two, or add measurements of where they are");
+}
+
+std::string words_for_holding(const Graph& graph, const Judged& judged) {
+  if (judged.rank > 0)
+    return anchored_in_part(graph, judged) + ": it is held at its present value until more is measured";
+  return "nothing anchors vertex " + to_string(graph.id(judged.holds)) + " and the " +
+         std::to_string(judged.count - 1) + " vertices joined to it: it is held at its present value";
 }
 
 }  // namespace
@@ -205,21 +263,11 @@ Gauge find_gauge(const Graph& graph, PartlyAnchored partly) {
   gauge.held.assign(graph.vertex_count(), 0);
   const double unit = information_unit(graph);
   for (std::size_t c = 0; c < components.first.size(); ++c) {
-    const VertexIndex first = components.first[c];
-    int rank = rank_of(information[c], unit);
-    if (rank == 1 || rank == 2) rank = rank_of_directions(graph, components, static_cast<std::int32_t>(c));
-    if (rank == 1 || rank == 2) {
-      if (partly == PartlyAnchored::refuse) refuse(graph, first, rank);
-      gauge.held[at(first)] = 1;
-      gauge.messages.push_back(anchored_in_part(graph, first, rank) +
-                               ": it is held at its present value until more is measured");
-    }
-    if (rank == 0) {
-      gauge.held[at(first)] = 1;
-      gauge.messages.push_back("nothing anchors vertex " + to_string(graph.id(first)) + " and the " +
-                               std::to_string(components.count[c] - 1) +
-                               " vertices joined to it: it is held at its present value");
-    }
+    const Judged judged = judge(graph, components, c, information[c], unit);
+    if (judged.is_anchored()) continue;
+    if (partly == PartlyAnchored::refuse) refuse(graph, judged);
+    gauge.held[at(judged.holds)] = 1;
+    gauge.messages.push_back(words_for_holding(graph, judged));
   }
   hold_foreign_poses(graph, gauge);
   return gauge;

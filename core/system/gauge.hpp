@@ -26,14 +26,15 @@ enum class PartlyAnchored {
 
 /// Examines every component of free vertices joined by edges. Its rigid-motion information is M =
 /// sum (J T)^T Omega (J T), where T are the motions along x, along y and about the centre (scaled
-/// by the extent). The rank of M decides:
-/// - 0: nothing anchors the component. Its first vertex is held, as usual in the field, and a
+/// by the extent). T moves a component in 3 ways; a single point in 2, because it turns about itself. The rank of M
+/// decides:
+/// - 0: nothing anchors the component. Its first vertex that has a heading is held, as usual in the field, and a
 ///   message says so.
-/// - 3: the component is anchored, and nothing is held.
-/// - 1 or 2: it is anchored in part (one fix; a parked car), if that is also the rank of the directions in which
+/// - all: the component is anchored, and nothing is held.
+/// - 1, or 2 of 3: it is anchored in part (one fix; a parked car), if that is also the rank of the directions in which
 ///   the edges are moved. What is known to 1e4 m only is faint in M beside 1e-6 rad, but known.
-/// @throws InputError for rank 1 or 2 (unless they are held); it names a vertex and the missing
-/// measurement
+/// @throws InputError for a component that is anchored in part, or that turns about any vertex that is held (points
+/// with distances between them); it names a vertex and the missing measurement. With `hold` both are held
 [[nodiscard]] Gauge find_gauge(const Graph& graph, PartlyAnchored partly = PartlyAnchored::refuse);
 
 }  // namespace waymark

@@ -8,6 +8,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/gauge.hpp>
+#include <waymark/types_se2/g2o_edges.hpp>
 
 #include "support/problems.hpp"
 #include "support/registry.hpp"
@@ -46,6 +47,21 @@ void add_fix(Graph& graph, VertexIndex origin, VertexIndex pose) {
   const auto value = graph.value(pose);
   graph.add_edge(EdgeGnssPosition{{value[0], value[1]}, {0, 0}}, {origin, pose}, Eigen::Matrix2d::Identity());
 }
+
+/// The distance between two points, m.
+struct EdgeDistance {
+  static constexpr std::string_view kTag = "EDGE_DISTANCE";
+  static constexpr int kErrorDimension = 1;
+  using Vertices = VertexList<VertexXy, VertexXy>;
+  static constexpr auto fields() { return std::array{field<&EdgeDistance::distance>("distance")}; }
+
+  template <typename T>
+  Eigen::Matrix<T, 1, 1> error(const Vector2<T>& one, const Vector2<T>& other) const {
+    return Eigen::Matrix<T, 1, 1>((other - one).norm() - T(distance));
+  }
+
+  double distance = 0;
+};
 
 int held_count(const Gauge& gauge) {
   return static_cast<int>(std::count(gauge.held.begin(), gauge.held.end(), 1));
@@ -144,6 +160,45 @@ TEST_CASE("gauge: a position beside a heading make rank 3 together") {
   add_fix(graph, add_fixed_origin(graph, 100), chain[2]);
   graph.add_edge(EdgePriorSe2{}, {chain[0]}, Eigen::Vector3d(0, 0, 100).asDiagonal());
   CHECK(held_count(find_gauge(graph)) == 0);
+}
+
+TEST_CASE("gauge: a point that known poses see is anchored, though it turns about itself") {
+  Graph graph;
+  const VertexIndex origin = add_fixed_origin(graph, 0);
+  const VertexIndex landmark = graph.add_vertex<VertexXy>(VertexId{1}, {3, 3});
+  graph.add_edge(EdgeSe2Xy{{5, 5}}, {origin, landmark}, Eigen::Matrix2d::Identity());
+  const Gauge gauge = find_gauge(graph);
+  CHECK(held_count(gauge) == 0);
+  CHECK(gauge.messages.empty());
+}
+
+TEST_CASE("gauge: a point that is seen in one direction only is anchored in 1 of 2 motions") {
+  Graph graph;
+  const VertexIndex origin = add_fixed_origin(graph, 0);
+  const VertexIndex landmark = graph.add_vertex<VertexXy>(VertexId{1}, {3, 3});
+  graph.add_edge(EdgeBearingSe2Xy{{0.8}}, {origin, landmark}, Eigen::Matrix<double, 1, 1>(1));
+  CHECK_THROWS_WITH(find_gauge(graph), Contains("vertex 1") && Contains("1 of 2"));
+}
+
+TEST_CASE("gauge: a pose is held, wherever the points stand in the file") {
+  Graph graph;
+  const VertexIndex landmark = graph.add_vertex<VertexXy>(VertexId{0}, {3, 3});
+  const auto chain = add_chain(graph, 10, 3);
+  for (const VertexIndex pose : chain)
+    graph.add_edge(EdgeSe2Xy{{1, 1}}, {pose, landmark}, Eigen::Matrix2d::Identity());
+  const Gauge gauge = find_gauge(graph);
+  CHECK(held_count(gauge) == 1);
+  CHECK(gauge.held[static_cast<std::size_t>(chain[0])] == 1);
+  CHECK_THAT(gauge.messages.at(0), Contains("vertex 10 "));
+}
+
+TEST_CASE("gauge: points that know only each other would turn about one that is held") {
+  Graph graph;
+  const VertexIndex first = graph.add_vertex<VertexXy>(VertexId{7}, {0, 0});
+  const VertexIndex second = graph.add_vertex<VertexXy>(VertexId{8}, {4, 0});
+  graph.add_edge(EdgeDistance{5}, {first, second}, Eigen::Matrix<double, 1, 1>(1));
+  CHECK_THROWS_WITH(find_gauge(graph), Contains("vertex 7") && Contains("FIX two"));
+  CHECK(held_count(find_gauge(graph, PartlyAnchored::hold)) == 1);
 }
 
 TEST_CASE("gauge: each component is judged by itself") {

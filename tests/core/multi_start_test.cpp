@@ -1,9 +1,14 @@
 // The default configuration: its first guess, when it tries others, and that it survives guesses
 // that defeat every algorithm.
+#include <algorithm>
+#include <cmath>
+#include <random>
+
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/optimize/named_start.hpp>
+#include <waymark/types_se2/g2o_edges.hpp>
 
 #include "support/problems.hpp"
 #include "support/registry.hpp"
@@ -47,6 +52,47 @@ Graph utm_drive(const TypeRegistry& registry, const std::string& modeling) {
   for (Fix& fix : drive.fixes) fix.position += far;
   drive.add_fixes(registry, modeling);
   return std::move(drive.graph);
+}
+
+/// A chain of 30 poses about a metre apart, with a fix of 2 m at every twentieth and three landmarks of which only the
+/// direction is seen. Values begin metres beside the truth.
+Graph bearing_drive(unsigned seed) {
+  constexpr int kPosesOfChain = 30;
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0, 1);
+  std::vector<Pose2<double>> poses = {Pose2<double>(0, 0, 0)};
+  for (int i = 1; i < kPosesOfChain; ++i)
+    poses.push_back(compose(poses.back(), Pose2<double>(1, 0, 0.02 + 0.05 * normal(random))));
+  Graph graph;
+  Pose2<double> reckoned(0, 0, 0);
+  std::vector<VertexIndex> chain;
+  for (int i = 0; i < kPosesOfChain; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    Eigen::Vector3d way(0, 0, 0);
+    if (i > 0)
+      way = between(poses[at - 1], poses[at]).vector() +
+            Eigen::Vector3d(0.05 * normal(random), 0.05 * normal(random), 0.01 + 0.02 * normal(random));
+    reckoned = compose(reckoned, Pose2<double>(way[0], way[1], way[2]));
+    const Eigen::Vector3d begin = reckoned.vector();
+    chain.push_back(graph.add_vertex<VertexSe2>(VertexId(i), {begin[0], begin[1], begin[2]}));
+    if (i > 0) graph.add_edge(EdgeSe2{way}, {chain[at - 1], chain[at]}, pose_information(0.05, 0.02));
+    if (i % 20 == 0)
+      graph.add_edge(EdgePriorSe2Xy{poses[at].position + 2 * Eigen::Vector2d(normal(random), normal(random))},
+                     {chain[at]}, 0.25 * Eigen::Matrix2d::Identity());
+  }
+  for (int l = 0; l < 3; ++l) {
+    const auto beside = static_cast<std::size_t>(random() % kPosesOfChain);
+    const Eigen::Vector2d place =
+        poses[beside].position + 8 * Eigen::Vector2d(normal(random), normal(random));
+    const Eigen::Vector2d begin = Eigen::Vector2d(10 * normal(random), 10 * normal(random));
+    const VertexIndex landmark = graph.add_vertex<VertexXy>(VertexId(100 + l), {begin[0], begin[1]});
+    for (std::size_t i = 0; i < poses.size(); i += 2) {
+      const Eigen::Vector2d seen = rotate(-poses[i].heading, Eigen::Vector2d(place - poses[i].position));
+      graph.add_edge(EdgeBearingSe2Xy{std::atan2(seen[1], seen[0]) + 0.02 * normal(random)},
+                     {chain[i], landmark}, Eigen::Matrix<double, 1, 1>(2500));
+    }
+  }
+  return graph;
 }
 
 }  // namespace
@@ -185,6 +231,18 @@ TEST_CASE("default start: poses on one heap are no obstacle, an undetermined gra
   one_fix.set_fixed(origin, true);
   one_fix.add_edge(EdgeGnssPosition{{5, 6}, {0, 0}}, {origin, 4}, Eigen::Matrix2d::Identity());
   CHECK_THROWS_WITH(optimize_default(one_fix, registry), Catch::Contains("2 of 3 rigid motions"));
+}
+
+TEST_CASE("default start: a start from which landmarks run away costs no graph that another one solves") {
+  const TypeRegistry registry = full_registry();
+  int cut_short = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    Graph graph = bearing_drive(seed);
+    const MultiStartSummary result = optimize_default(graph, registry);
+    CHECK(result.summary.final_chi2 <= 1e3 * plausible_chi2(graph));
+    cut_short += result.summary.iterations > 30;
+  }
+  CHECK(cut_short > 0);
 }
 
 TEST_CASE("default start: without registered starts the values given are all there is") {
