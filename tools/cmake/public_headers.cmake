@@ -121,6 +121,7 @@ set(WAYMARK_INCLUDED_HEADERS
   core/base/detail/thread_pool.hpp
   core/base/detail/unrolled.hpp
   core/graph/detail/dual_functions.hpp
+  core/graph/detail/edge_contract.hpp
   core/graph/detail/robust_information.hpp
   core/graph/detail/typed_batch.hpp
   core/linear/detail/dense_kernels.hpp
