@@ -237,7 +237,7 @@ class GraphReader {
                        "information"));
       information_ = *inverse;
     } else if (!is_positive_semidefinite(information_)) {
-      line.fail(join(tag, "the information matrix is indefinite (an eigenvalue below -1e-9 of the largest)"));
+      line.fail(join(tag, kIndefinite));
     } else if (format_ == GraphFormat::toro && information_.isZero(0)) {
       // A .graph may hold an edge that measures nothing. TORO, which divides by the sum of these, cannot.
       line.fail(join(tag, "the information matrix is zero; remove the edge, or state what it measures"));
