@@ -3,16 +3,15 @@
 /// type without linearize(...).
 #pragma once
 
-#include <cmath>
-
 #include <Eigen/Core>
 
 #include <waymark/core/base/export.hpp>
+#include <waymark/core/graph/detail/dual_functions.hpp>
 
 namespace WAYMARK_EXPORT waymark {
 
 template <int N>
-struct Dual {
+struct Dual : DualFunctions<Dual<N>> {
   using Derivative = Eigen::Array<double, N, 1, Eigen::DontAlign>;
 
   double value = 0;
@@ -28,6 +27,9 @@ struct Dual {
     result.derivative[index] = 1;
     return result;
   }
+
+  /// Tells whether no variable changes it.
+  [[nodiscard]] bool is_constant() const { return (derivative == 0).all(); }
 
   Dual& operator+=(const Dual& b) {
     value += b.value;
@@ -58,31 +60,6 @@ struct Dual {
   friend bool operator<=(const Dual& a, const Dual& b) { return a.value <= b.value; }
   friend bool operator>=(const Dual& a, const Dual& b) { return a.value >= b.value; }
   friend bool operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
-
-  friend Dual sin(const Dual& a) { return Dual(std::sin(a.value), std::cos(a.value) * a.derivative); }
-  friend Dual cos(const Dual& a) { return Dual(std::cos(a.value), -std::sin(a.value) * a.derivative); }
-  friend Dual tan(const Dual& a) {
-    const double t = std::tan(a.value);
-    return Dual(t, (1 + t * t) * a.derivative);
-  }
-  friend Dual exp(const Dual& a) {
-    const double e = std::exp(a.value);
-    return Dual(e, e * a.derivative);
-  }
-  friend Dual log(const Dual& a) { return Dual(std::log(a.value), a.derivative / a.value); }
-  friend Dual sqrt(const Dual& a) {
-    const double r = std::sqrt(a.value);
-    return Dual(r, a.derivative * (0.5 / r));
-  }
-  friend Dual abs(const Dual& a) { return a.value < 0 ? -a : a; }
-  friend Dual hypot(const Dual& a, const Dual& b) {
-    const double r = std::hypot(a.value, b.value);
-    return Dual(r, (a.value * a.derivative + b.value * b.derivative) / r);
-  }
-  friend Dual atan2(const Dual& y, const Dual& x) {
-    const double squared = x.value * x.value + y.value * y.value;
-    return Dual(std::atan2(y.value, x.value), (x.value * y.derivative - y.value * x.derivative) / squared);
-  }
 };
 
 }  // namespace waymark

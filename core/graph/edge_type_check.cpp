@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <utility>
 
@@ -18,29 +19,80 @@ struct Joined {
   std::size_t tangent_size = 0;
 };
 
+using Numbers = std::vector<double>;
+
+/// Draws values of vertices that are valid for their types.
+class ValueDraw {
+ public:
+  ValueDraw(const EdgeScenario& scenario, std::mt19937_64& random) : scenario_(scenario), random_(random) {}
+
+  [[nodiscard]] Numbers value(const VertexType& type) {
+    if (is_curved(type)) return moved(type, base(type), scenario_.place);
+    Numbers numbers;
+    for (const std::string& name : type.value_names) {
+      numbers.push_back(name == "heading" ? scenario_.heading + scenario_.spread * unit()
+                                          : scenario_.place * unit());
+    }
+    return normalised(type, std::move(numbers));
+  }
+  /// A value near another one, by the size of fields.
+  [[nodiscard]] Numbers near(const VertexType& type, Numbers numbers) {
+    if (is_curved(type)) return moved(type, std::move(numbers), scenario_.field);
+    for (double& x : numbers) x += scenario_.field * unit();
+    return numbers;
+  }
+
+ private:
+  /// Tells whether values have more numbers than degrees of freedom, such as a unit vector: then not every
+  /// choice of numbers is a value.
+  static bool is_curved(const VertexType& type) { return type.value_size != type.tangent_size; }
+
+  double unit() { return std::uniform_real_distribution<double>(-1, 1)(random_); }
+  static Numbers normalised(const VertexType& type, Numbers numbers) {
+    const Numbers zero(static_cast<std::size_t>(type.tangent_size), 0.0);
+    type.retract(numbers.data(), zero.data());
+    return numbers;
+  }
+  Numbers moved(const VertexType& type, Numbers numbers, double most) {
+    Numbers delta(static_cast<std::size_t>(type.tangent_size));
+    for (double& d : delta) d = most * unit();
+    type.retract(numbers.data(), delta.data());
+    return numbers;
+  }
+  /// The value from which all vertices of a curved type are moved, so that a scenario of small motions has
+  /// them.
+  const Numbers& base(const VertexType& type) {
+    const auto [found, is_new] = bases_.try_emplace(type.tag);
+    if (is_new) {
+      Numbers numbers(static_cast<std::size_t>(type.value_size));
+      for (double& x : numbers) x = unit();
+      found->second = normalised(type, std::move(numbers));
+    }
+    return found->second;
+  }
+
+  const EdgeScenario& scenario_;
+  std::mt19937_64& random_;
+  std::map<std::string, Numbers> bases_;
+};
+
 Joined add_vertices(const TypeRegistry& registry, const EdgeType& type, const EdgeScenario& scenario,
                     std::mt19937_64& random, Graph& graph) {
-  std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<std::string> tags = type.vertex_tags;
   if (type.arity == EdgeType::kRuntimeArity) {  // it takes any vertices
     for (const auto& [vertex, origin] : registry.vertices()) tags.push_back(vertex.tag);
   }
+  ValueDraw draw(scenario, random);
   Joined joined;
   for (const std::string& tag : tags) {
     const VertexType* vertex = registry.find_vertex(tag);
     if (vertex == nullptr)
       throw UsageError(type.tag + ": joins " + tag +
                        ", which is not registered; load the plugin that defines it");
-    std::vector<double> value;
-    for (const std::string& name : vertex->value_names) {
-      value.push_back(name == "heading" ? scenario.heading + scenario.spread * unit(random)
-                                        : scenario.place * unit(random));
-    }
-    const std::vector<double> zero(static_cast<std::size_t>(vertex->tangent_size), 0.0);
-    vertex->retract(value.data(), zero.data());  // this normalises the value
+    const Numbers value = draw.value(*vertex);
     joined.vertices.push_back(graph.add_vertex(*vertex, VertexId(joined.vertices.size()), value));
-    joined.tangent_size += zero.size();
-    for (const double x : value) joined.reference.push_back(x + scenario.field * unit(random));
+    joined.tangent_size += static_cast<std::size_t>(vertex->tangent_size);
+    for (const double x : draw.near(*vertex, value)) joined.reference.push_back(x);
   }
   return joined;
 }

@@ -26,7 +26,9 @@ struct EdgeScenario {
 [[nodiscard]] std::span<const EdgeScenario> edge_scenarios();
 
 /// Returns a graph with one edge of the type and its vertices. All numbers are drawn from
-/// the scenario.
+/// the scenario. Vertices of a type with fewer degrees of freedom than numbers, such as a unit
+/// vector, start from one valid value (random numbers, normalised by a retraction by 0) and are
+/// moved from it by the retraction, so their values are valid.
 /// @throws UsageError if a vertex type that the edge joins is not registered
 [[nodiscard]] Graph single_edge(const TypeRegistry& registry, const EdgeType& type,
                                 const EdgeScenario& scenario, std::mt19937_64& random);

@@ -4,8 +4,10 @@
 /// All data here are constant.
 #pragma once
 
+#include <concepts>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -42,22 +44,33 @@ struct MemberPointer<V E::*> {
   using Value = V;
 };
 
+/// A vector or matrix of Eigen whose doubles lie in a row.
+template <typename V>
+concept FixedVector = requires(V& vector) {
+  requires(V::SizeAtCompileTime > 0);
+  { vector.data() } -> std::same_as<double*>;
+};
+
 }  // namespace detail
 
 /// Makes a Field from a member that is a double or a fixed-size Eigen vector:
 /// field<&EdgeSe2::measured>("measured"). For a member that E inherits, it is field<&Base::change,
 /// E>("change").
 template <auto Member, typename E = typename detail::MemberPointer<decltype(Member)>::Class>
-[[nodiscard]] constexpr auto field(std::string_view name) {
+[[nodiscard]] constexpr Field<E> field(std::string_view name) {
   using V = typename detail::MemberPointer<decltype(Member)>::Value;
-  if constexpr (std::is_same_v<V, double>) {
-    return Field<E>{name, 1, [](const E& edge) -> const double* { return &(edge.*Member); },
-                    [](E& edge) -> double* { return &(edge.*Member); }};
+  constexpr bool kIsNumber = std::is_same_v<V, double>;
+  static_assert(kIsNumber || detail::FixedVector<V>,
+                "a field is a double or a fixed-size Eigen vector: write double for an int, Eigen::Vector3d "
+                "for a std::array<double, 3> or a pose");
+  if constexpr (kIsNumber) {
+    return {name, 1, [](const E& edge) -> const double* { return &(edge.*Member); },
+            [](E& edge) -> double* { return &(edge.*Member); }};
+  } else if constexpr (detail::FixedVector<V>) {
+    return {name, V::SizeAtCompileTime, [](const E& edge) -> const double* { return (edge.*Member).data(); },
+            [](E& edge) -> double* { return (edge.*Member).data(); }};
   } else {
-    static_assert(V::SizeAtCompileTime > 0, "a field is a double or a fixed-size Eigen vector");
-    return Field<E>{name, V::SizeAtCompileTime,
-                    [](const E& edge) -> const double* { return (edge.*Member).data(); },
-                    [](E& edge) -> double* { return (edge.*Member).data(); }};
+    return {};
   }
 }
 

@@ -41,7 +41,8 @@ using VertexIndex = std::int32_t;
 ///   V::Value<T>        the value in the form that errors of edges take, generic in the scalar
 ///   V::at<T>(const double* value, const T* delta) -> Value<T>: the value retracted by delta
 ///   V::retract(double* value, const double* delta)
-///                      value := value [+] delta, normalised
+///                      value := value [+] delta, normalised: by a delta of 0, numbers such as
+///                      those of a quaternion of any length but 0 become a value
 ///   V::local(const double* from, const double* to, double* delta)
 ///                      delta with from [+] delta == to
 /// @endcode

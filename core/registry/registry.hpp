@@ -66,9 +66,11 @@ class TypeRegistry {
   void add_vertex() {
     add_vertex(make_vertex_type<V>());
   }
-  template <Edge E>
+  template <typename E>
   void add_edge() {
-    add_edge(make_edge_type<E>());
+    static_assert(Edge<E>,
+                  "an edge type has kTag, kErrorDimension, Vertices and fields(): core/graph/edge.hpp");
+    if constexpr (Edge<E>) add_edge(make_edge_type<E>());
   }
 
   /// Each returns null if nothing has the tag or name.

@@ -9,6 +9,7 @@
 #include <waymark/formats/graph/detail/sensor_offsets.hpp>
 #include <waymark/formats/graph/detail/toro.hpp>
 #include <waymark/formats/graph/graph_format.hpp>
+#include <waymark/formats/text/detail/byte_order_mark.hpp>
 #include <waymark/formats/text/detail/line_scanner.hpp>
 
 namespace waymark::formats {
@@ -107,8 +108,7 @@ class GraphReader {
   }
 
   void read_first_line() {
-    // the byte order mark of some editors
-    if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
+    text_ = without_byte_order_mark(text_);
     const std::string_view first = text_.substr(0, text_.find('\n'));
     LineScanner line(first, name_, 1);
     if (line.word() != "GRAPH" || is_toro()) return;
@@ -237,7 +237,7 @@ class GraphReader {
                        "information"));
       information_ = *inverse;
     } else if (!is_positive_semidefinite(information_)) {
-      line.fail(join(tag, "the information matrix is indefinite (an eigenvalue below -1e-9 of the largest)"));
+      line.fail(join(tag, kIndefinite));
     } else if (format_ == GraphFormat::toro && information_.isZero(0)) {
       // A .graph may hold an edge that measures nothing. TORO, which divides by the sum of these, cannot.
       line.fail(join(tag, "the information matrix is zero; remove the edge, or state what it measures"));

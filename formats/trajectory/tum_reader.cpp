@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/detail/byte_order_mark.hpp>
 #include <waymark/formats/text/detail/line_scanner.hpp>
 #include <waymark/formats/text/stamp_text.hpp>
 #include <waymark/formats/trajectory/trajectory.hpp>
@@ -50,7 +51,7 @@ StampedPose read_pose(LineScanner& line) {
 std::vector<StampedPose> read_tum(std::string_view text, std::string_view name) {
   std::vector<StampedPose> poses;
   const std::string file(name);
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  text = without_byte_order_mark(text);
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     LineScanner line(text.substr(0, end), file, number);

@@ -52,6 +52,45 @@ struct EdgeFragile {
   double measured = 0;
 };
 
+/// A unit vector of the plane: two numbers with one degree of freedom.
+struct VertexDirection {
+  static constexpr std::string_view kTag = "VERTEX_TEST_DIRECTION";
+  static constexpr int kValueSize = 2;
+  static constexpr int kTangentSize = 1;
+  static constexpr std::array<std::string_view, 2> value_names() { return {"cosine", "sine"}; }
+  template <typename T>
+  static Vector2<T> at(const double* value, const T* delta) {
+    return rotate(delta[0], Vector2<T>(T(value[0]), T(value[1])));
+  }
+  static void retract(double* value, const double* delta) {
+    const Eigen::Vector2d turned = at<double>(value, delta) / std::hypot(value[0], value[1]);
+    std::copy_n(turned.data(), 2, value);
+  }
+  static void local(const double* from, const double* to, double* delta) {
+    delta[0] = std::atan2(from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
+  }
+};
+
+/// Its error is not finite for a vector that is no direction.
+struct EdgeDirection {
+  static constexpr std::string_view kTag = "EDGE_TEST_DIRECTION";
+  static constexpr int kErrorDimension = 1;
+  using Vertices = VertexList<VertexDirection, VertexDirection>;
+  static constexpr auto fields() { return std::array{field<&EdgeDirection::measured>("measured")}; }
+  template <typename T>
+  Eigen::Matrix<T, 1, 1> error(const Vector2<T>& a, const Vector2<T>& b) const {
+    const bool valid = is_unit(a) && is_unit(b);
+    const T sine = a[0] * b[1] - a[1] * b[0];
+    return Eigen::Matrix<T, 1, 1>(valid ? T(sine - measured) : T(std::nan("")));
+  }
+  template <typename T>
+  static bool is_unit(const Vector2<T>& v) {
+    using std::abs;
+    return abs(T(v.squaredNorm() - T(1.0))) < T(1e-12);
+  }
+  double measured = 0;
+};
+
 VertexType of_angle() {
   VertexType type;
   type.tag = "VERTEX_TEST_ANGLE";
@@ -105,6 +144,33 @@ TEST_CASE("promises: an edge that says kRelative and is not is found by its norm
   CHECK_FALSE(liar.sound());
   CHECK(check_edge_type(registry, *registry.find_edge("EDGE_DIFFERENCE")).sound());
   CHECK(check_edge_type(registry, *registry.find_edge("EDGE_SE2")).normal_error < 1e-12);
+}
+
+TEST_CASE(
+    "promises: edges are tried at valid values of vertices with fewer degrees of freedom than numbers") {
+  TypeRegistry registry = full_registry();
+  registry.add_vertex<VertexDirection>();
+  registry.add_edge<EdgeDirection>();
+  CHECK(broken_promises(*registry.find_vertex("VERTEX_TEST_DIRECTION")).empty());
+  const EdgeTypeCheck check = check_edge_type(registry, *registry.find_edge("EDGE_TEST_DIRECTION"));
+  CHECK(check.not_finite == 0);
+  CHECK(check.sound());
+  CHECK(check_edge_type(registry, *registry.find_edge("EDGE_GAUSSIAN_PRIOR")).sound());  // it joins all types
+}
+
+TEST_CASE("promises: vertices of such a type are as near to each other as the scenario says") {
+  TypeRegistry registry = full_registry();
+  registry.add_vertex<VertexDirection>();
+  registry.add_edge<EdgeDirection>();
+  for (const EdgeScenario& scenario : edge_scenarios()) {
+    INFO(scenario.name);
+    std::mt19937_64 random(3);
+    const Graph graph = single_edge(registry, *registry.find_edge("EDGE_TEST_DIRECTION"), scenario, random);
+    double angle = 0;
+    VertexDirection::local(graph.value(0).data(), graph.value(1).data(), &angle);
+    CHECK(std::abs(angle) <= 2 * scenario.place + 1e-15);
+    CHECK(std::hypot(graph.value(0)[0], graph.value(0)[1]) == Approx(1).epsilon(1e-14));
+  }
 }
 
 TEST_CASE("promises: wrong charts are named") {

@@ -257,6 +257,12 @@ class Errors(unittest.TestCase):
         self.raised(waymark.UsageError, odometry=[1, 2, 3], gnss=fixes)
         self.raised(waymark.UsageError, odometry={"time": np.zeros((2, 2))}, gnss=fixes)
 
+    def test_masked_entries_are_refused(self):
+        fixes = {**gnss(), "latitude": np.ma.masked_less(gnss()["latitude"], 0)}
+        fixes["latitude"][3] = np.ma.masked
+        error = self.raised(waymark.UsageError, odometry=odometry(), gnss=fixes)
+        self.assertIn("gnss: column 'latitude': has masked entries", str(error))
+
     def test_a_row_that_is_no_time_has_its_number(self):
         table = odometry()
         table["time"] = table["time"].copy()

@@ -173,6 +173,63 @@ class Graphs(unittest.TestCase):
             with self.assertRaises(waymark.UsageError):
                 wrong()
 
+    def test_what_a_file_may_not_hold_is_refused(self):
+        nan, inf = np.nan, np.inf
+        skew = np.array([[1, 5, 0], [0, 1, 0], [0, 0, 1.0]])
+        pairs, motions = [[0, 1], [1, 2]], np.array([[1, 0, 0], [1, 0, 0.0]])
+        second = lambda bad: np.stack([np.eye(3), bad])
+        edges = lambda fields, information: graph.add_edges("EDGE_SE2", pairs, fields, information)
+        edge = lambda information: graph.add_edge("EDGE_SE2", [0, 1], [1, 0, 0], information)
+        graph = ring("EDGE_SE2")
+        before = graph.edge_types, graph.vertex_types, graph.chi2
+        for words, wrong in (
+            ("information: the information matrix is indefinite", lambda: edge(-np.eye(3))),
+            ("information: edge 1: the information matrix is indefinite",
+             lambda: edges(motions, second(np.diag([1, 1, -1e-3])))),
+            ("information: edge 1: .*indefinite", lambda: edges(motions, second([[1, 2, 0], [2, 1, 0], [0, 0, 1]]))),
+            ("information: the information matrix is not symmetric: 5 in row 0 and column 1, 0 opposite",
+             lambda: edge(skew)),
+            ("information: edge 1: .*not symmetric", lambda: edges(motions, second(skew.T))),
+            ("information: row 2, column 1 is nan",
+             lambda: edge([[1, 0, 0], [0, 1, 0], [0, nan, 1]])),
+            ("information: edge 1: row 0, column 0 is inf", lambda: edges(motions, second(np.diag([inf, 1, 1])))),
+            (r"fields: edge 1: measured\[2\] is nan", lambda: edges([[1, 0, 0], [1, 0, nan]], np.eye(3))),
+            (r"fields: edge 0: measured\[0\] is -inf", lambda: edges([[-inf, 0, 0], [1, 0, nan]], np.eye(3))),
+            ("values: vertex 71: heading is nan", lambda: graph.add_vertices([70, 71], [[0, 0, 0], [0, 0, nan]])),
+            ("values: vertex 1: y is inf", lambda: graph.set_values([0, 1], [[0, 0, 0], [0, inf, 0]])),
+        ):
+            with self.subTest(words), self.assertRaisesRegex(waymark.UsageError, words):
+                wrong()
+        self.assertEqual((graph.edge_types, graph.vertex_types, graph.chi2), before)  # nothing was added
+
+    def test_information_of_numpy_and_of_32_bits_is_accepted(self):
+        random = np.random.default_rng(5)
+        graph = ring("EDGE_SE2")
+        for scale in (np.ones(3), np.array([1e-4, 1, 1e3])):
+            root = scale[:, None] * random.normal(0, 1, (50, 3, 8))
+            inverses = np.linalg.inv(root @ np.swapaxes(root, 1, 2))  # symmetric up to rounding
+            for matrix in (inverses, inverses.astype(np.float32), np.zeros((50, 3, 3))):
+                graph.add_edges("EDGE_SE2", [[0, 1]] * 50, [[1, 0, 0]] * 50, matrix)
+        rank_one = np.outer([1, 2, 3], [1, 2, 3])  # no information along two axes
+        graph.add_edge("EDGE_SE2", [0, 1], [1, 0, 0], rank_one)
+
+    def test_masked_entries_are_refused(self):
+        graph = ring("EDGE_SE2")
+        masked = lambda rows: np.ma.masked_greater(np.array(rows), 98)
+        for name, wrong in (
+            ("values", lambda: graph.add_vertices([70], masked([[0, 0, 99.0]]))),
+            ("values", lambda: graph.add_vertex(70, masked([0, 0, 99.0]))),
+            ("values", lambda: graph.set_values([0], masked([[0, 0, 99.0]]))),
+            ("ids", lambda: graph.marginals(masked([1, 99]))),
+            ("time", lambda: graph.add_vertices([70], [[0, 0, 0]], time=masked([99.0]))),
+            ("fields", lambda: graph.add_edge("EDGE_SE2", [0, 1], masked([1, 0, 99.0]), np.eye(3))),
+            ("fields", lambda: graph.add_edges("EDGE_SE2", [[0, 1]], masked([[1, 0, 99.0]]), np.eye(3))),
+            ("information", lambda: graph.add_edge("EDGE_SE2", [0, 1], [1, 0, 0], masked(99 * np.eye(3)))),
+        ):
+            with self.subTest(name), self.assertRaisesRegex(waymark.UsageError, f"^{name}: has masked entries"):
+                wrong()
+        graph.add_edge("EDGE_SE2", [0, 1], masked([1, 0, 0]), np.eye(3))  # nothing is masked in it
+
 
 class PythonEdges(unittest.TestCase):
     """EDGE_SE2 of C++ is the peer: the same error has the same minimum."""

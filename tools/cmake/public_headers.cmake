@@ -120,6 +120,8 @@ set(WAYMARK_INCLUDED_HEADERS
   core/base/detail/processor.hpp
   core/base/detail/thread_pool.hpp
   core/base/detail/unrolled.hpp
+  core/graph/detail/dual_functions.hpp
+  core/graph/detail/edge_contract.hpp
   core/graph/detail/robust_information.hpp
   core/graph/detail/typed_batch.hpp
   core/linear/detail/dense_kernels.hpp

@@ -7,6 +7,7 @@
 #include <waymark/core/base/detail/processor.hpp>
 #include <waymark/core/base/detail/unrolled.hpp>
 #include <waymark/core/base/export.hpp>
+#include <waymark/core/graph/detail/edge_contract.hpp>
 #include <waymark/core/graph/detail/robust_information.hpp>
 #include <waymark/core/graph/dual.hpp>
 #include <waymark/core/graph/edge_batch.hpp>
@@ -21,6 +22,9 @@ using JacobianMatrix = Eigen::Matrix<double, D, N>;
 
 template <Edge E>
 class EdgeBatch final : public EdgeBatchBase {
+  static_assert(sizeof(EdgeContract<E>) > 0);
+  static constexpr bool kUsable = EdgeRules<E>::kKept;  // false: the contract has stopped the compiler
+
  public:
   static constexpr int kArity = E::Vertices::kSize;
   static constexpr int kDimension = E::kErrorDimension;
@@ -281,7 +285,11 @@ class EdgeBatch final : public EdgeBatchBase {
   template <std::size_t... K>
   [[gnu::always_inline]] static ErrorVector<kDimension> error(const Record& record, const ValueView& view,
                                                               std::index_sequence<K...>) {
-    return record.edge.template error<double>(load<K>(record, view)...);
+    if constexpr (kUsable) {
+      return record.edge.template error<double>(load<K>(record, view)...);
+    } else {
+      return {};
+    }
   }
 
   [[gnu::always_inline]] static void derive(const Record& record, const ValueView& view,
@@ -324,13 +332,17 @@ class EdgeBatch final : public EdgeBatchBase {
   template <std::size_t... K>
   static void differentiate(const Record& record, const ValueView& view, ErrorVector<kDimension>& e,
                             Jacobians& jacobians, std::index_sequence<K...>) {
-    const Eigen::Matrix<Scalar, kDimension, 1> dual =
-        record.edge.template error<Scalar>(load_dual<K>(record, view)...);
-    for (int row = 0; row < kDimension; ++row) {
-      e[row] = dual[row].value;
-      ((std::get<K>(jacobians).row(row) =
-            dual[row].derivative.matrix().template segment<VertexOf<K>::kTangentSize>(lane<K>()).transpose()),
-       ...);
+    if constexpr (kUsable) {
+      const Eigen::Matrix<Scalar, kDimension, 1> dual =
+          record.edge.template error<Scalar>(load_dual<K>(record, view)...);
+      for (int row = 0; row < kDimension; ++row) {
+        e[row] = dual[row].value;
+        ((std::get<K>(jacobians).row(row) = dual[row]
+                                                .derivative.matrix()
+                                                .template segment<VertexOf<K>::kTangentSize>(lane<K>())
+                                                .transpose()),
+         ...);
+      }
     }
   }
 

@@ -14,6 +14,10 @@ namespace waymark::formats {
 /// mean no information on an axis.
 [[nodiscard]] bool is_positive_semidefinite(const Eigen::MatrixXd& matrix);
 
+/// What is said of an information matrix that is not.
+inline constexpr std::string_view kIndefinite =
+    "the information matrix is indefinite (an eigenvalue below -1e-9 of the largest)";
+
 /// Reads the next word as the id of a vertex of the graph. @throws InputError if it is none
 [[nodiscard]] VertexIndex read_vertex_id(LineScanner& line, const Graph& graph, std::string_view tag);
 

@@ -54,6 +54,15 @@ TEST_CASE("nmea: any order of the sentences and any talker give the same fixes")
   }
 }
 
+TEST_CASE("nmea: a byte order mark hides no sentence, and no log") {
+  const std::string text = gga("124022.25") + rmc("124022.25") + gga("124023.25");
+  const LogData data = read("\xEF\xBB\xBF" + text);
+  CHECK(data.fixes.size() == read(text).fixes.size());
+  CHECK(data.kinds == read(text).kinds);
+  CHECK(data.corrupt == 0);
+  CHECK(NmeaReader().recognise("\xEF\xBB\xBF" + text).certainty == NmeaReader().recognise(text).certainty);
+}
+
 TEST_CASE("nmea: GNS, GLL and VTG stand in for what is not there") {
   const LogData data =
       read(rmc("000001") + line("GNGNS,000002,4810.8509,S,01133.9095,E,AN,05,1.2,100.5,-20.25,,") +

@@ -11,6 +11,7 @@
 #include <waymark/formats/logs/detail/csv/csv_columns.hpp>
 #include <waymark/formats/logs/detail/csv/csv_table.hpp>
 #include <waymark/formats/logs/detail/csv/table_header.hpp>
+#include <waymark/formats/text/detail/characters.hpp>
 
 namespace waymark::inspection {
 namespace {
@@ -222,13 +223,12 @@ void keep_one_each(std::vector<ColumnSummary>& columns, bool of_bus) {
 }
 
 void TableSurvey::take_line(std::string_view line, std::size_t number) {
-  const std::string_view content = formats::table_content(line, number);
+  const std::string_view content = formats::without_blanks(line);
   if (content.empty()) return;
   if (content.front() == '#') {
     if (!begun_) comment_ = content.substr(1);
     return;
   }
-  if (number == 1) line = content;
   if (!begun_) return begin(line);
   const bool whole = formats::split_fields(line, summary_.separator, fields_) && fields_.size() == width_;
   if (std::exchange(may_have_units_, false) && whole && formats::is_unit_row(fields_, summary_.separator)) {

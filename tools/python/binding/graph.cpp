@@ -15,6 +15,7 @@
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/drive/model/minimize.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
+#include <waymark/tools/python/binding/checks.hpp>
 #include <waymark/tools/python/binding/choices.hpp>
 #include <waymark/tools/python/binding/fused.hpp>
 
@@ -98,6 +99,8 @@ void PythonGraph::add_vertices(const std::string& type, const Integers& ids, con
   const VertexType& of = vertex_type(type);
   require_size("values", values.size(), ids.size() * of.value_size);
   if (stamps_ns) require_size("time", stamps_ns->size(), ids.size());
+  for (py::ssize_t i = 0; i < ids.size(); ++i)
+    check_value(of, VertexId{ids.data()[i]}, row(values, i, of.value_size));
   for (py::ssize_t i = 0; i < ids.size(); ++i) {
     const VertexIndex v =
         document_.graph.add_vertex(of, VertexId{ids.data()[i]}, row(values, i, of.value_size));
@@ -118,6 +121,8 @@ std::size_t PythonGraph::add_edges(const std::string& type, const Integers& vert
   const py::ssize_t size = information.ndim() < 2 ? 1 : information.shape(information.ndim() - 1);
   const bool is_shared = information.size() == size * size && information.ndim() < 3;
   if (!is_shared) require_size("information", information.size(), count * size * size);
+  check_fields(of, fields, count);
+  check_information(information, size, is_shared);
   const std::optional<Loss> robust =
       loss ? std::optional(drive::named_loss(*loss, "loss", *registry_)) : std::nullopt;
   const std::size_t first = document_.graph.batch(of).size();
@@ -138,12 +143,17 @@ void PythonGraph::set_values(const Integers& ids, const Numbers& values) {
   py::ssize_t total = 0;
   for (const VertexIndex v : found) total += document_.graph.vertex_type(v).value_size;
   require_size("values", values.size(), total);
-  const double* next = values.data();
-  for (const VertexIndex v : found) {
-    const auto size = static_cast<std::size_t>(document_.graph.vertex_type(v).value_size);
-    document_.graph.set_value(v, {next, size});
-    next += size;
-  }
+  Graph& graph = document_.graph;
+  const auto visit = [&](const auto& use) {
+    const double* next = values.data();
+    for (const VertexIndex v : found) {
+      const auto size = static_cast<std::size_t>(graph.vertex_type(v).value_size);
+      use(v, std::span(next, size));
+      next += size;
+    }
+  };
+  visit([&](VertexIndex v, auto value) { check_value(graph.vertex_type(v), graph.id(v), value); });
+  visit([&](VertexIndex v, auto value) { graph.set_value(v, value); });
 }
 
 void PythonGraph::set_fixed(const Integers& ids, bool is_fixed) {

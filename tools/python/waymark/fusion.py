@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from waymark import _waymark
+from waymark.arrays import require_unmasked
 from waymark.errors import DriveWarning, NotConverged, UsageError
 from waymark.results import Result
 
@@ -156,12 +157,14 @@ def _columns(name: str, table: Table) -> tuple[dict[str, Any], bool]:
     if names is None:
         try:
             names = list(table)
-            columns = {str(key): np.asarray(table[key]) for key in names}
+            columns = {str(key): table[key] for key in names}
         except (TypeError, KeyError, IndexError):
             raise UsageError(f"{name}: expected columns by name: a dict, a structured array or a DataFrame") from None
     else:
-        columns = {key: np.asarray(table[key]) for key in names}
-    for key, array in columns.items():
+        columns = {key: table[key] for key in names}
+    for key, column in columns.items():
+        require_unmasked(f"{name}: column '{key}'", column)
+        columns[key] = array = np.asarray(column)
         if array.ndim != 1:
             raise UsageError(f"{name}: column '{key}' must have one dimension, it has {array.ndim}")
         if array.dtype.kind not in "fiubM":

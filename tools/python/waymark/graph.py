@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from waymark import _waymark
+from waymark.arrays import floats, require_unmasked
 from waymark.errors import DriveWarning, UsageError
 from waymark.results import Floats, Integers, Summary, seconds
 
@@ -115,7 +116,7 @@ class Graph:
         time: float | None = None,
     ) -> None:
         """Add a vertex. ``value`` has the numbers of its type: x, y and heading for VERTEX_SE2."""
-        self.add_vertices([id], np.asarray(value)[None], type=type, time=None if time is None else [time])
+        self.add_vertices([id], np.asanyarray(value)[None], type=type, time=None if time is None else [time])
         if fixed:
             self.set_fixed([id])
 
@@ -129,7 +130,7 @@ class Graph:
     ) -> None:
         """Add vertices of one type: ``values`` has a row for each, ``time`` is in seconds."""
         stamps = None if time is None else _nanoseconds(time)
-        self._graph.add_vertices(type, _ids(ids), np.asarray(values, dtype=np.float64), stamps)
+        self._graph.add_vertices(type, _ids(ids), floats("values", values), stamps)
 
     def value(self, id: int) -> Floats:
         """Return the value of a vertex."""
@@ -137,7 +138,7 @@ class Graph:
 
     def set_values(self, ids: npt.ArrayLike, values: npt.ArrayLike) -> None:
         """Set the values of vertices, a row for each."""
-        self._graph.set_values(_ids(ids), np.asarray(values, dtype=np.float64))
+        self._graph.set_values(_ids(ids), floats("values", values))
 
     def set_fixed(self, ids: npt.ArrayLike, fixed: bool = True) -> None:
         """Hold vertices at their values, or let them go."""
@@ -172,7 +173,8 @@ class Graph:
 
         ``loss`` is a robust loss with its scale in standard deviations, such as "cauchy:1".
         """
-        self.add_edges(type, [list(vertices)], [np.ravel(fields)], np.atleast_2d(information), loss=loss)
+        numbers, matrix = np.ravel(floats("fields", fields)), np.atleast_2d(floats("information", information))
+        self.add_edges(type, [list(vertices)], [numbers], matrix, loss=loss)
 
     def add_edges(
         self,
@@ -185,13 +187,15 @@ class Graph:
     ) -> None:
         """Add edges of one type: ``vertices`` and ``fields`` have a row for each.
 
-        ``information`` is one matrix for all (d, d), or one for each (n, d, d).
+        ``information`` is one matrix for all (d, d), or one for each (n, d, d): symmetric and positive
+        semidefinite. What a file may not hold (such a matrix, NaN, infinity) raises UsageError, and no edge
+        is added.
         """
         if isinstance(type, EdgeType):
             self._graph.add_edge_type(type._functions)
             type = type.tag
-        numbers = np.asarray(fields, dtype=np.float64)
-        self._graph.add_edges(type, _ids(vertices), numbers, np.asarray(information, dtype=np.float64), loss)
+        numbers, matrices = floats("fields", fields), floats("information", information)
+        self._graph.add_edges(type, _ids(vertices), numbers, matrices, loss)
 
     def edges(self, type: str) -> tuple[Integers, Floats, Floats]:
         """Return the edges of a type: ids of their vertices, fields, information, a row for each."""
@@ -263,6 +267,7 @@ class Graph:
 
 
 def _ids(ids: npt.ArrayLike) -> Integers:
+    require_unmasked("ids", ids)
     array = np.asarray(ids)
     if array.size > 0 and array.dtype.kind not in "iu":
         raise UsageError(f"ids: must be integers, got {array.dtype}")
@@ -270,7 +275,7 @@ def _ids(ids: npt.ArrayLike) -> Integers:
 
 
 def _nanoseconds(time: npt.ArrayLike) -> Integers:
-    array = np.asarray(time, dtype=np.float64)
+    array = floats("time", time)
     if not np.all(np.abs(array) < 9.2e9):  # also for NaN
         raise UsageError("time: must be seconds of less than 292 years")
     whole = np.floor(array)

@@ -44,6 +44,7 @@ void LineDecoder::give(std::string_view line) {
     corrupt(number_, 1, "a line of more than 1 MiB is no record of a log");
     return;
   }
+  if (number_ == 1) line = without_byte_order_mark(line);
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   take_line(line, number_);
 }

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include <waymark/core/drive/log_reader.hpp>
+#include <waymark/formats/text/detail/byte_order_mark.hpp>
 
 namespace waymark::formats {
 
@@ -22,7 +23,8 @@ class LineDecoder : public LogDecoder {
 
  protected:
   /// Takes one line.
-  /// @param line without its end ("\n" or "\r\n"); may be empty; valid only during the call
+  /// @param line without its end ("\n" or "\r\n"), and the first one without a byte order mark; may be
+  /// empty; valid only during the call
   /// @param number 1-based
   virtual void take_line(std::string_view line, std::size_t number) = 0;
   /// Called after the last line.
@@ -52,7 +54,7 @@ class LineDecoder : public LogDecoder {
 /// without an end may be cut off, so it is left out too, unless it is the only one.
 class HeadLines {
  public:
-  explicit HeadLines(std::string_view head) : rest_(head) {}
+  explicit HeadLines(std::string_view head) : rest_(without_byte_order_mark(head)) {}
   /// Goes to the next line. @return false after the last one
   [[nodiscard]] bool next();
   /// The line without its end.

@@ -16,6 +16,7 @@
 #include <waymark/formats/logs/detail/csv/csv_records.hpp>
 #include <waymark/formats/logs/detail/csv/csv_table.hpp>
 #include <waymark/formats/logs/detail/csv/table_header.hpp>
+#include <waymark/formats/text/detail/characters.hpp>
 
 namespace waymark::formats {
 namespace {
@@ -33,13 +34,12 @@ class CsvDecoder final : public LineDecoder {
 
  private:
   void take_line(std::string_view line, std::size_t number) override {
-    const std::string_view content = table_content(line, number);
+    const std::string_view content = without_blanks(line);
     if (content.empty()) return;
     if (content.front() == '#') {
       comment_ = content.substr(1);
       return;
     }
-    if (number == 1) line = content;  // without a byte order mark
     if (table_) return table_->read_line(line, number);
     if (first_number_ == 0) {  // the line below it may hold its units
       first_ = line;

@@ -7,8 +7,6 @@
 namespace waymark::formats {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 /// Takes the separator before the next field. @return false at the end of the line.
 bool take_separator(std::string_view& rest, char separator) {
   if (rest.empty()) return false;
@@ -45,10 +43,6 @@ bool take_quoted(std::string_view& rest, char separator, std::string_view& field
 
 }  // namespace
 
-CsvLines::CsvLines(std::string_view text) : rest_(text) {
-  if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
-}
-
 bool CsvLines::next() {
   comment_ = {};
   while (!rest_.empty()) {
@@ -63,11 +57,6 @@ bool CsvLines::next() {
     comment_ = content.substr(1);
   }
   return false;
-}
-
-std::string_view table_content(std::string_view line, std::size_t number) {
-  if (number == 1 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
-  return without_blanks(line);
 }
 
 char separator_of(std::string_view header) {

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include <waymark/formats/text/detail/byte_order_mark.hpp>
+
 namespace waymark::formats {
 
 /// A line with content.
@@ -18,14 +20,11 @@ struct TableLine {
   std::string_view units_below = {};
 };
 
-/// Returns the content of a line without blanks, and of a first line without its byte order mark.
-[[nodiscard]] std::string_view table_content(std::string_view line, std::size_t number);
-
 /// Visits the lines with content. It skips a byte order mark, blank lines and comments (lines whose
 /// first visible character is '#'). Line ends are "\n" or "\r\n".
 class CsvLines {
  public:
-  explicit CsvLines(std::string_view text);
+  explicit CsvLines(std::string_view text) : rest_(without_byte_order_mark(text)) {}
 
   /// Goes to the next line. @return false at the end of the text
   [[nodiscard]] bool next();

@@ -13,6 +13,7 @@
 #include <waymark/formats/logs/detail/common/position_stream.hpp>
 #include <waymark/formats/logs/detail/common/record_fields.hpp>
 #include <waymark/formats/logs/detail/common/table_accuracy.hpp>
+#include <waymark/formats/text/detail/byte_order_mark.hpp>
 #include <waymark/formats/text/detail/line_scanner.hpp>
 #include <waymark/formats/text/detail/xml_stream.hpp>
 #include <waymark/formats/text/iso8601.hpp>
@@ -262,7 +263,7 @@ std::unique_ptr<LogDecoder> GpxReader::open(const std::string& path, const LogRe
 }
 
 Recognition GpxReader::recognise(std::string_view head) const {
-  if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
+  head = without_byte_order_mark(head);
   const std::size_t start = head.find_first_not_of(" \t\r\n");
   if (start == std::string_view::npos || head[start] != '<') return {};
   const std::size_t root = head.find("<gpx");

@@ -1,0 +1,15 @@
+// error: error returns a vector of another length than kErrorDimension says
+#include "base.hpp"
+
+struct EdgeWrong {
+  static constexpr std::string_view kTag = "EDGE_WRONG";
+  static constexpr int kErrorDimension = 1;
+  using Vertices = VertexList<VertexSe2>;
+  static constexpr auto fields() { return std::array{field<&EdgeWrong::measured>("measured")}; }
+  template <typename T>
+  Vector2<T> error(const Pose2<T>& pose) const {
+    return pose.position;
+  }
+  double measured = 0;
+};
+template void use<EdgeWrong>();
