@@ -103,6 +103,7 @@ struct PreparedOdometry {
 struct PreparedReceiver {
   std::string name;
   Eigen::Vector2d antenna_m{0, 0};  ///< body frame
+  bool delay_is_stated = false;     ///< which was subtracted
 };
 
 /// The pose of the body point at the first node, as it is stated; in the frame.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -201,6 +202,41 @@ void adapt(const PreparedDrive& drive, bool by_default, FusionSettings& decision
   }
 }
 
+/// Returns by how much the only odometry is late, if all receivers seem to know positions before they had them. What
+/// is stated of delays is believed.
+double late_odometry(const std::vector<std::optional<TimeOffset>>& offsets, const PreparedDrive& drive,
+                     const FusionSettings& stated, const std::vector<AbsoluteGroup>& groups) {
+  constexpr double kDeviations = 4;
+  constexpr double kLeast_s = 0.02;
+  if (!drive.relative.empty() || groups.empty()) return 0;
+  double late_s = std::numeric_limits<double>::infinity();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const bool is_open = is_delay_open(groups[g], stated) && offsets[g] &&
+                         std::none_of(groups[g].sources.begin(), groups[g].sources.end(), [&](int source) {
+                           const auto at = static_cast<std::size_t>(source);
+                           return at < drive.receivers.size() && drive.receivers[at].delay_is_stated;
+                         });
+    if (!is_open || -offsets[g]->value_s < std::max(kLeast_s, kDeviations * offsets[g]->sigma_s)) return 0;
+    late_s = std::min(late_s, -offsets[g]->value_s);
+  }
+  return late_s;
+}
+
+/// Returns the drive with earlier stamps of the odometry, less the fixes that then lie after it.
+PreparedDrive with_odometry_moved(PreparedDrive drive, double late_s) {
+  for (OdometrySample& sample : drive.odometry) sample.stamp = sample.stamp.later(-late_s);
+  const Stamp end = drive.odometry.back().stamp;
+  std::erase_if(drive.fixes, [&](const Fix& fix) { return fix.stamp > end; });
+  return drive;
+}
+
+std::string words_for_late_odometry(double late_s) {
+  return fmt::format(
+      "the odometry is {:.3f} s late beside the fixes, which cannot be early: its stamps are moved by that; state "
+      "'time: {{offset: {:.3f}}}' for its logs, or the 'delay' of the receiver if its stamps are wrong",
+      late_s, -late_s);
+}
+
 std::string words_for_poor_odometry(const PlacedDrive& placed) {
   return (placed.runs.empty() ? "" : placed.odometry_name + ": ") +
          std::string(
@@ -247,6 +283,8 @@ ModeledDrive Fusion::estimated_from(PlacedDrive placed, const FusionSettings& se
                             ? leave_out_unseen(settings, decision, modeled)
                             : leave_out_improbable(offsets, settings, decision, modeled);
   if (left_out) (void)estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
+  modeled.odometry_late_s =
+      left_out ? 0 : late_odometry(offsets, drive_, settings, groups_of(modeled.placed, decision));
   modeled.decision = std::move(decision);
   return modeled;
 }
@@ -266,20 +304,35 @@ std::optional<ModeledDrive> Fusion::along_fixes(const PlacedDrive& usual, const 
   return other;
 }
 
-ModeledDrive Fusion::estimated(const FusionSettings& settings) {
+ModeledDrive Fusion::searched(const FusionSettings& settings) {
   const PlacedDrive& usual = placed(decision_on(settings));
   ModeledDrive modeled = estimated_from(usual, settings);
   if (modeled.noise.parameters.empty()) return modeled;
   if (std::optional<ModeledDrive> other = along_fixes(usual, settings, modeled)) modeled = std::move(*other);
   if (modeled.noise.odometry_is_poor())
     modeled.placed.warnings.push_back(words_for_poor_odometry(modeled.placed));
+  return modeled;
+}
+
+void Fusion::add_deviations(ModeledDrive& modeled) const {
+  if (modeled.noise.parameters.empty()) return;
   find_deviations(modeled.placed, drive_.sensors, modeled.decision, registry_, modeled.noise, between_);
+}
+
+ModeledDrive Fusion::estimated(const FusionSettings& settings) {
+  ModeledDrive modeled = searched(settings);
+  add_deviations(modeled);
   return modeled;
 }
 
 ModeledDrive Fusion::model(const FusionSettings& settings) {
   refuse_misreading(placed(decision_on(settings)));
-  ModeledDrive modeled = estimated(settings);
+  ModeledDrive modeled = searched(settings);
+  if (const double late_s = modeled.odometry_late_s; late_s > 0) {
+    modeled = Fusion(with_odometry_moved(drive_, late_s), registry_, between_).searched(settings);
+    modeled.placed.warnings.push_back(words_for_late_odometry(late_s));
+  }
+  add_deviations(modeled);
   BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);
   modeled.modelings = std::move(built.modelings);

@@ -47,6 +47,8 @@ struct ModeledDrive {
   FusionSettings decision;  ///< the same without the estimated noise
   PlacedDrive placed;       ///< nodes, gate, initial guess
   NoiseEstimate noise;      ///< without parameters if the noise is as stated
+  /// by which the fixes seem to come before they were measured: the stamps of the odometry are late. 0: they are not
+  double odometry_late_s = 0;
   std::vector<std::string> sensor_warnings;
   /// groups of receivers whose fixes are taken as not late; an only receiver is ""
   std::vector<std::string> without_delay;
@@ -84,10 +86,12 @@ class Fusion {
   Fusion(const PreparedDrive& drive, const TypeRegistry& registry, std::function<void()> between = {})
       : drive_(drive), registry_(registry), between_(std::move(between)) {}
 
-  /// Does the steps before the graph: placing, delays and noise. The document is empty.
+  /// Does the steps before the graph: placing, delays and noise. The document is empty. An odometry whose stamps are
+  /// late is not moved: what was found fits the drive as it goes on.
   /// @throws errors of the steps
   [[nodiscard]] ModeledDrive estimated(const FusionSettings& settings);
-  /// Does the steps up to the graph.
+  /// Does the steps up to the graph. An odometry whose stamps are late is moved to the clock of the fixes: receivers
+  /// have that of GNSS, may be late, and are never early.
   /// @throws InputError if the odometry or the positions were read in a wrong unit or sense (misreading.hpp);
   /// errors of the steps
   [[nodiscard]] ModeledDrive model(const FusionSettings& settings);
@@ -107,6 +111,9 @@ class Fusion {
   };
   [[nodiscard]] FusionSettings decision_on(const FusionSettings& settings) const;
   [[nodiscard]] const PlacedDrive& placed(const FusionSettings& settings);
+  /// As estimated(), without the deviations of the noise.
+  [[nodiscard]] ModeledDrive searched(const FusionSettings& settings);
+  void add_deviations(ModeledDrive& modeled) const;
   [[nodiscard]] ModeledDrive estimated_from(PlacedDrive placed, const FusionSettings& settings);
   /// Returns the drive with a start along the fixes, if that is more probable: the odometry is then worth little.
   [[nodiscard]] std::optional<ModeledDrive> along_fixes(const PlacedDrive& usual,
