@@ -4,6 +4,7 @@
 #include <future>
 #include <random>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -171,6 +172,36 @@ TEST_CASE("a yaw rate of the other sign is told", "[live]") {
     return event.kind == "warning" && event.text.find("yaw rate") != std::string::npos;
   });
   CHECK(sign >= 1);
+}
+
+TEST_CASE("a yaw rate from wheels errs with the speed, which is known before anything was learned",
+          "[live]") {
+  constexpr double kUnlikeWheels = 2e-3;  // rad/m
+  const auto said_by = [&](const LiveDrive& drive, std::string_view source) {
+    drive::DriveDescription description = live_description();
+    description.odometry.front().assembly.yaw_rate_from = source;
+    return listen(description, drive.arrivals, {}, settings_of(true));
+  };
+  const auto drive_of = [&](double duration_s) {
+    LiveDrive drive = live_drive("rural", duration_s);
+    for (Sample& sample : drive.arrivals)
+      if (auto* odometry = std::get_if<OdometrySample>(&sample))
+        odometry->yaw_rate_radps += kUnlikeWheels * odometry->speed_mps;
+    return drive;
+  };
+  SECTION("before the first lesson") {
+    const LiveDrive drive = drive_of(58);
+    const double known = rms(errors_m(said_by(drive, "rear_wheels"), drive));
+    CHECK(known < 0.8 * rms(errors_m(said_by(drive, ""), drive)));
+    Estimator estimator(live_description(), settings_of(true), {}, registry());
+    estimator.know_yaw_rate(0, "rear_wheels");  // as the inputs tell it
+    CHECK(heard(estimator, drive.arrivals).text() == said_by(drive, "rear_wheels").text());
+  }
+  SECTION("and after it") {
+    const LiveDrive drive = drive_of(300);
+    const double known = late_rms(errors_m(said_by(drive, "rear_wheels"), drive));
+    CHECK(known < 0.8 * late_rms(errors_m(said_by(drive, ""), drive)));
+  }
 }
 
 TEST_CASE("a window that is built again from its inputs has the poses of one that never was", "[live]") {

@@ -76,6 +76,29 @@ double turns_apart(const ChordPair& one, const ChordPair& next) {
   return wrap_angle(angle_between(one.odometry, next.odometry) - angle_between(one.gnss, next.gnss));
 }
 
+double bias_of(std::span<const ChordPair> chords) {
+  constexpr std::size_t kFewest = 10;
+  std::vector<double> biases;
+  for (std::size_t i = 1; i < chords.size(); ++i)
+    if (chords[i].follows)
+      biases.push_back(turns_apart(chords[i - 1], chords[i]) /
+                       (0.5 * (chords[i - 1].duration_s + chords[i].duration_s)));
+  return biases.size() < kFewest ? 0 : median_with_sigma(std::move(biases)).value;
+}
+
+ReckonedFixes without_bias(ReckonedFixes receiver, double bias_radps) {
+  const std::vector<Eigen::Vector3d> bent = receiver.antenna;
+  for (std::size_t i = 1; i < bent.size(); ++i) {
+    const double before_s = seconds_between(receiver.fixes.front().stamp, receiver.fixes[i - 1].stamp);
+    const double after_s = seconds_between(receiver.fixes.front().stamp, receiver.fixes[i].stamp);
+    const Eigen::Vector2d step = bent[i].head<2>() - bent[i - 1].head<2>();
+    receiver.antenna[i].head<2>() =
+        receiver.antenna[i - 1].head<2>() + rotate(-bias_radps * 0.5 * (before_s + after_s), step);
+    receiver.antenna[i][2] = bent[i][2] - bias_radps * after_s;
+  }
+  return receiver;
+}
+
 std::vector<TurnPair> turns_of(std::span<const ChordPair> chords) {
   std::vector<TurnPair> turns;
   for (std::size_t i = 1; i < chords.size(); ++i) {

@@ -46,6 +46,13 @@ struct ChordPair {
 /// chords themselves, whatever the headings along them.
 [[nodiscard]] double turns_apart(const ChordPair& one, const ChordPair& next);
 
+/// Returns the bias of the odometry's yaw rate that the chords show in the median, rad/s; 0 for few.
+[[nodiscard]] double bias_of(std::span<const ChordPair> chords);
+
+/// Returns the fixes beside the odometry less a bias of its yaw rate, rad/s: what lies between two fixes is turned as a
+/// whole.
+[[nodiscard]] ReckonedFixes without_bias(ReckonedFixes receiver, double bias_radps);
+
 /// A turn from one chord to the next.
 struct TurnPair {
   double gnss_rad = 0;      ///< in (-pi, pi]

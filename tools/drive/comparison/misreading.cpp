@@ -74,17 +74,6 @@ constexpr double kNoTurns = std::numeric_limits<double>::infinity();
 constexpr std::array kYawFactors = {
     1.0, -1.0, kDegreesOfRadian, 1 / kDegreesOfRadian, -kDegreesOfRadian, -1 / kDegreesOfRadian, kNoTurns};
 
-/// Returns the bias of the yaw rate that the legs show in the median, rad/s; 0 for few.
-double bias_of(std::span<const ChordPair> legs) {
-  constexpr std::size_t kFewest = 10;
-  std::vector<double> biases;
-  for (std::size_t i = 1; i < legs.size(); ++i)
-    if (legs[i].follows)
-      biases.push_back(turns_apart(legs[i - 1], legs[i]) /
-                       (0.5 * (legs[i - 1].duration_s + legs[i].duration_s)));
-  return biases.size() < kFewest ? 0 : median_with_sigma(std::move(biases)).value;
-}
-
 constexpr std::array kLegs_m = {20.0, 60.0, 180.0};
 using Legs = std::array<std::vector<ChordPair>, kLegs_m.size()>;
 

@@ -23,6 +23,13 @@ bool is_unusual(double factor) {
   return factor > kLargestFactor || factor < 1 / kLargestFactor;
 }
 
+/// Legs that show the bias of the gyro.
+std::vector<ChordPair> legs_of(const ReckonedFixes& receiver) {
+  constexpr double kLeg_m = 20;
+  constexpr double kLongest_s = 30;
+  return chords_of(receiver, kLongest_s, [](const ChordPair& leg) { return leg.gnss.norm() >= kLeg_m; });
+}
+
 /// Chords for turns end by the fixes alone, because turns in a wrong unit curl the odometry up.
 std::vector<TurnPair> turns_between(const ReckonedFixes& receiver) {
   constexpr double kChord_m = 20;
@@ -31,15 +38,26 @@ std::vector<TurnPair> turns_between(const ReckonedFixes& receiver) {
   return turns_of(chords_of(receiver, kLongest_s, is_complete));
 }
 
-/// Compares the size of the turns of the fixes.
-std::string size_of_turns(const std::vector<TurnPair>& all) {
+/// Returns the turns of 15 degrees or more: those of the fixes, or those of the odometry times a factor.
+std::vector<TurnPair> large_turns(const std::vector<TurnPair>& all, double factor) {
   constexpr double kSmallest = 15 * kDegrees;
-  constexpr double kNear = 1.15;
   std::vector<TurnPair> turns;
   for (const TurnPair& pair : all)
-    if (std::abs(pair.gnss_rad) >= kSmallest) turns.push_back(pair);
+    if (std::abs(pair.gnss_rad) >= kSmallest || std::abs(factor * pair.odometry_rad) >= kSmallest)
+      turns.push_back(pair);
+  return turns;
+}
+
+/// Compares the size of the turns of the fixes. Where the vehicle hardly turns, those of the fixes alone are noise
+/// that happens to be large: so the factor must explain those that it expects of the odometry as well.
+std::string size_of_turns(const std::vector<TurnPair>& all) {
+  constexpr double kNear = 1.15;
+  std::vector<TurnPair> turns = large_turns(all, 0);
   if (turns.size() < kFewestTurns) return {};
-  const std::optional<double> found = factor_of_turns(turns);
+  std::optional<double> found = factor_of_turns(turns);
+  if (!found || !is_unusual(std::abs(*found))) return {};
+  turns = large_turns(all, *found);
+  found = factor_of_turns(turns);
   if (!found || !is_unusual(std::abs(*found))) return {};
   const double factor = 1 / std::abs(*found);  // of the odometry
   const auto is_near = [&](double unit) { return factor < kNear * unit && factor > unit / kNear; };
@@ -113,19 +131,30 @@ std::string words_for_scale(double factor, std::size_t chords, double sigma) {
       factor, chords, sigma, std::abs(1 / factor - 1));
 }
 
+/// Returns how many times the ways of the fixes are those of the odometry along chords of 100 m that bend alike: what
+/// turns otherwise, by a gyro that is dead for example, has other chords for the same way.
+std::vector<double> chord_factors(const ReckonedFixes& receiver) {
+  constexpr double kHalf_m = 50;
+  constexpr double kLongest_s = 30;
+  constexpr double kAlike = 0.3;  // rad: the chord of two halves that turn by so much more is 1 % shorter
+  const auto is_complete = [](const ChordPair& chord) { return chord.odometry.norm() >= kHalf_m; };
+  const std::vector<ChordPair> halves = chords_of(receiver, kLongest_s, is_complete);
+  std::vector<double> factors;
+  for (std::size_t i = 1; i < halves.size(); ++i) {
+    if (!halves[i].follows || std::abs(turns_apart(halves[i - 1], halves[i])) > kAlike) continue;
+    factors.push_back((halves[i - 1].gnss + halves[i].gnss).norm() /
+                      (halves[i - 1].odometry + halves[i].odometry).norm());
+    ++i;  // a half counts once
+  }
+  return factors;
+}
+
 /// Finds an error of scale beyond the prior of `speed_scale`. The noise of fixes across a chord makes
 /// the chord longer by at most half the squared spread.
-std::string small_factor(const ReckonedFixes& receiver, std::optional<double>& found, bool& tells) {
-  constexpr double kChord_m = 100;
-  constexpr double kLongest_s = 60;
+/// @param factors of chord_factors()
+std::string small_factor(const std::vector<double>& factors, std::optional<double>& found) {
   constexpr double kUsual = 0.03;  // three sigmas of the prior of speed_scale
   constexpr double kSigmas = 4;
-  const auto is_complete = [](const ChordPair& chord) { return chord.odometry.norm() >= kChord_m; };
-  std::vector<double> factors;
-  for (const ChordPair& chord : chords_of(receiver, kLongest_s, is_complete))
-    factors.push_back(chord.gnss.norm() / chord.odometry.norm());
-  tells = factors.size() >= kFewestChords;
-  if (!tells) return {};
   const Median factor = median_with_sigma(factors);
   const double uncertain = kSigmas * factor.sigma + 0.5 * factor.spread * factor.spread;
   if (std::abs(factor.value - 1) < kUsual + uncertain) return {};
@@ -133,7 +162,7 @@ std::string small_factor(const ReckonedFixes& receiver, std::optional<double>& f
   return words_for_scale(*found, factors.size(), factor.sigma);
 }
 
-/// Finds one on a drive that is too short for long chords. @param factors of way_factors()
+/// Finds one on a drive that has few long chords. @param factors of way_factors()
 std::string rough_factor(const std::vector<double>& factors, std::optional<double>& found) {
   constexpr double kWrong = 0.1;
   constexpr double kSigmas = 3;
@@ -151,8 +180,9 @@ Shape shape_of(const ReckonedFixes& receiver) {
   // Turns of another size distort all lengths, and lengths of another unit all differences of them.
   if (std::string size = size_of_turns(turns); !size.empty()) return {{std::move(size)}, true, true};
   Shape shape;
-  const std::vector<double> ways = way_factors(receiver);
-  bool long_chords_tell = false;
+  const ReckonedFixes straight = without_bias(receiver, bias_of(legs_of(receiver)));
+  const std::vector<double> ways = way_factors(straight);
+  const std::vector<double> chords = chord_factors(straight);
   if (std::string sign = sign_of_turns(turns); !sign.empty()) {
     shape.sentences.push_back(std::move(sign));
     shape.contradicts = true;
@@ -161,10 +191,10 @@ Shape shape_of(const ReckonedFixes& receiver) {
     shape.sentences.push_back(std::move(factor));
     shape.contradicts = true;
     shape.spoils_jumps = true;
-  } else if (factor = small_factor(receiver, shape.speed_factor, long_chords_tell); !factor.empty()) {
-    shape.sentences.push_back(std::move(factor));
-  } else if (factor = long_chords_tell ? "" : rough_factor(ways, shape.speed_factor); !factor.empty()) {
-    shape.sentences.push_back(std::move(factor));
+  } else {
+    factor = chords.size() >= kFewestChords ? small_factor(chords, shape.speed_factor)
+                                            : rough_factor(ways, shape.speed_factor);
+    if (!factor.empty()) shape.sentences.push_back(std::move(factor));
   }
   return shape;
 }
@@ -238,7 +268,7 @@ std::vector<std::string> jumps_in_words(const ReckonedFixes& receiver) {
 }  // namespace
 
 std::string warning_of_accelerations(std::span<const OdometrySample> odometry) {
-  constexpr double kLargest = 10;  // m/s^2
+  constexpr double kLargest = 25;  // m/s^2: racing cars reach half of it, and deg/s are 57 times as much
   constexpr double kDrives = 2;    // m/s
   constexpr double kShare = 0.05;
   std::size_t driving = 0;

@@ -140,6 +140,15 @@ void adapt_to_yaw_rate(const YawRateAtRest& rest, bool by_default, FusionSetting
     settings.calibration->try_emplace("yaw_per_speed", "constant");
 }
 
+void adapt_to_yaw_rate_of(const std::string& source, const YawRateAtRest& rest, bool by_default,
+                          FusionSettings& settings, const TypeRegistry& registry) {
+  FusionSettings own = for_relative(settings, source);
+  adapt_to_yaw_rate(rest, by_default, own, registry);
+  SourceSettings& kept = settings.sources[source];
+  kept.options = own.odometry_options;
+  kept.calibration = *own.calibration;
+}
+
 Options with_calibration(Options options, const FusionSettings& settings,
                          const std::vector<OptionInfo>& known) {
   for (const auto& [name, value] : settings.calibration.value_or(Options())) {

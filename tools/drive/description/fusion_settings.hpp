@@ -105,6 +105,10 @@ void require_common_errors(const FusionSettings& settings, const std::string& gr
 void adapt_to_yaw_rate(const YawRateAtRest& rest, bool by_default, FusionSettings& settings,
                        const TypeRegistry& registry);
 
+/// Adapts those of one of several relative sources alone. @param source its name
+void adapt_to_yaw_rate_of(const std::string& source, const YawRateAtRest& rest, bool by_default,
+                          FusionSettings& settings, const TypeRegistry& registry);
+
 /// Returns the options of an odometry model or a GNSS modeling, with the calibration states
 /// that it knows.
 /// @param known the options that it has

@@ -393,6 +393,10 @@ class Assembler {
 
 }  // namespace
 
+bool is_from_wheels_or_steering(std::string_view source) {
+  return source == "rear_wheels" || source == "rear_ticks" || source == "steering";
+}
+
 AssembledOdometry assemble_odometry(std::span<const OdometryPart> parts, const OdometryAssembly& how,
                                     double gap_s) {
   return Assembler(collect_channels(parts), how, gap_s).run();

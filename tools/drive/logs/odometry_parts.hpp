@@ -22,6 +22,8 @@ inline constexpr std::array<std::string_view, 7> kSpeedSources{
 /// the shorter way round between readings.
 inline constexpr std::array<std::string_view, 7> kYawRateSources{
     "yaw_rate", "gyro", "rear_wheels", "rear_ticks", "steering", "heading", "course"};
+/// Tells whether a source of the yaw rate computes it from wheels or steering. @param source empty: it does not
+[[nodiscard]] bool is_from_wheels_or_steering(std::string_view source);
 /// The gyro axis that points up; with '-' it points down. `gravity`: it is found with the
 /// accelerometer.
 inline constexpr std::array<std::string_view, 7> kGyroAxes{"x", "-x", "y", "-y", "z", "-z", "gravity"};

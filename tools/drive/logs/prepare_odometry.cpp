@@ -42,9 +42,7 @@ void assemble_parts(const std::vector<DriveLogs::Log>& logs, const OdometryAssem
     }
   }();
   odometry = std::move(assembled.samples);
-  const std::string_view from = assembled.yaw_rate_from;
-  source.yaw_rate_at_rest.stated_derived =
-      from == "rear_wheels" || from == "rear_ticks" || from == "steering";
+  source.yaw_rate_at_rest.stated_derived = is_from_wheels_or_steering(assembled.yaw_rate_from);
   report.notes.insert(report.notes.end(), assembled.notes.begin(), assembled.notes.end());
   report.warnings.insert(report.warnings.end(), assembled.warnings.begin(), assembled.warnings.end());
 }
@@ -102,6 +100,7 @@ void read_source(const std::vector<DriveLogs::Log>& logs, const OdometryConfig& 
   std::vector<OdometrySample>& samples = source.samples;
   for (const DriveLogs::Log& log : logs)
     append_log(log.data.odometry, log, description.scale(), samples, stream, report);
+  source.yaw_rate_at_rest.stated_derived = is_from_wheels_or_steering(config.assembly.yaw_rate_from);
   assemble_parts(logs, config.assembly, description, source, report);
   drop_impossible_turns(source.name, logs.front().file, stream, samples, report);
   clean_stream(

@@ -65,6 +65,13 @@ bool leads_along(const Eigen::Vector2d& velocity, const std::vector<Fix>& fixes,
   return is_near(way_beside(fixes, first, true)) || is_near(way_beside(fixes, last, false));
 }
 
+/// A receiver may lose its corrections while the vehicle stands: the worst fix counts.
+double worst_accuracy_m(std::span<const Fix> fixes) {
+  double worst = 0;
+  for (const Fix& fix : fixes) worst = std::max(worst, fix.accuracy_m());
+  return worst;
+}
+
 /// Returns the speed of the fixes from one moment to another if the vehicle creeps.
 std::optional<double> creeping_speed(const std::vector<Fix>& fixes, Stamp from, Stamp to, double zone_mps) {
   constexpr double kErrorsLast_s = 30;
@@ -73,11 +80,12 @@ std::optional<double> creeping_speed(const std::vector<Fix>& fixes, Stamp from, 
   const auto is_earlier = [](const Fix& fix, Stamp stamp) { return fix.stamp < stamp; };
   const auto begin = std::lower_bound(fixes.begin(), fixes.end(), from, is_earlier);
   const auto end = std::lower_bound(begin, fixes.end(), to, is_earlier);
-  const std::optional<Line> line = line_through(std::span<const Fix>(begin, end));
+  const std::span<const Fix> during(begin, end);
+  const std::optional<Line> line = line_through(during);
   if (!line) return std::nullopt;
   const double speed = line->velocity.norm();
   const double drift = std::sqrt(2 * (1 - std::exp(-line->duration_s / kErrorsLast_s)));
-  const double least_m = std::max(kLeast_m, kSigmas * drift * begin->accuracy_m());
+  const double least_m = std::max(kLeast_m, kSigmas * drift * worst_accuracy_m(during));
   if (speed > 1.2 * zone_mps || speed * line->duration_s < least_m) return std::nullopt;
   const auto first = static_cast<std::size_t>(begin - fixes.begin());
   const auto last = static_cast<std::size_t>(end - fixes.begin()) - 1;

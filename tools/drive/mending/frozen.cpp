@@ -171,12 +171,6 @@ std::span<const Fix> within(const std::vector<Fix>& fixes, Stamp from, Stamp to)
   return {begin, std::find_if(begin, fixes.end(), [&](const Fix& fix) { return fix.stamp > to; })};
 }
 
-double length_of(std::span<const Fix> fixes) {
-  double length = 0;
-  for (std::size_t i = 1; i < fixes.size(); ++i) length += (fixes[i].position - fixes[i - 1].position).norm();
-  return length;
-}
-
 bool drives(std::span<const OdometrySample> samples) {
   return std::all_of(samples.begin(), samples.end(),
                      [](const OdometrySample& sample) { return std::abs(sample.speed_mps) >= kMoves; });
@@ -186,16 +180,45 @@ double duration_of(std::span<const OdometrySample> samples) {
   return seconds_between(samples.front().stamp, samples.back().stamp);
 }
 
-/// Tells whether the fixes have a speed for as long as they last: a vehicle on cruise control, or a tram.
-bool fixes_agree(std::span<const Fix> fixes, double speed_mps) {
+/// What fixes that are never further apart than a chord may be long tell of the way between them.
+struct WayOfFixes {
+  double duration_s = 0;
+  double chords_m = 0;  ///< no longer than the way, but for the noise of their ends
+  double steps_m = 0;   ///< of 2 s or more: no shorter than the way, but for what bends cut off
+};
+
+WayOfFixes way_of(std::span<const Fix> fixes) {
+  WayOfFixes way;
+  std::size_t begin = 0;
+  std::size_t step = 0;
+  for (std::size_t i = 1; i <= fixes.size(); ++i) {
+    const bool breaks =
+        i == fixes.size() || seconds_between(fixes[i - 1].stamp, fixes[i].stamp) > kLongestChord_s;
+    if (breaks || seconds_between(fixes[step].stamp, fixes[i - 1].stamp) >= kShortestChord_s) {
+      way.steps_m += (fixes[i - 1].position - fixes[step].position).norm();
+      step = i - 1;
+    }
+    if (!breaks) continue;
+    way.duration_s += seconds_between(fixes[begin].stamp, fixes[i - 1].stamp);
+    way.chords_m += (fixes[i - 1].position - fixes[begin].position).norm();
+    begin = step = i;
+  }
+  return way;
+}
+
+/// Tells whether fixes during one speed have that speed: a vehicle on cruise control, a speed of few digits, or a
+/// tram. Empty if there are too few to tell.
+std::optional<bool> fixes_agree(std::span<const Fix> fixes, double speed_mps) {
   constexpr double kShare = 0.06;  // scales of wheels, and what a chord is shorter than an arc
   constexpr std::size_t kFewestHere = 4;
-  if (fixes.size() < kFewestHere) return false;
+  if (fixes.size() < kFewestHere) return std::nullopt;
   std::vector<double> accuracies;
   for (const Fix& fix : fixes) accuracies.push_back(fix.accuracy_m());
-  const double way_m = speed_mps * seconds_between(fixes.front().stamp, fixes.back().stamp);
-  const double chord_m = (fixes.back().position - fixes.front().position).norm();
-  return std::abs(chord_m - way_m) < kShare * way_m + upper_median(std::move(accuracies));
+  const WayOfFixes way = way_of(fixes);
+  if (way.duration_s < kShortestChord_s) return std::nullopt;
+  const double repeated_m = speed_mps * way.duration_s;
+  const double allowed_m = kShare * repeated_m + upper_median(std::move(accuracies));
+  return way.chords_m - allowed_m < repeated_m && repeated_m < way.steps_m + allowed_m;
 }
 
 /// Tells whether all readings are those of a vehicle that stands. One that comes back to a place has turned.
@@ -221,17 +244,22 @@ void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vec
                         std::vector<FrozenOdometry>& found) {
   const std::vector<Run> runs = runs_of(odometry, &OdometrySample::speed_mps);
   const std::optional<std::size_t> unusual = unusual_run(odometry, runs, &OdometrySample::speed_mps);
+  const std::optional<std::size_t> unusual_turns = unusual_run(
+      odometry, runs_of(odometry, &OdometrySample::yaw_rate_radps), &OdometrySample::yaw_rate_radps);
   for (const Run& run : runs) {
     const auto samples = run.of(odometry);
     const OdometrySample& first = samples.front();
     const bool with_turns = all_repeat(samples, &OdometrySample::yaw_rate_radps);
     const bool is_long = with_turns || duration_of(samples) >= kShortestOfOne_s;
     const std::span<const Fix> during = within(fixes, first.stamp, samples.back().stamp);
-    const bool fits = !with_turns && fixes_agree(during, std::abs(first.speed_mps));
-    if (fits) continue;
-    if (unusual && is_long && samples.size() >= *unusual && drives(samples)) {
+    // A speed alone repeats itself on cruise control, or if it has few digits; a gyro that is alive never does.
+    const bool gyro_stopped = with_turns && unusual_turns && samples.size() >= *unusual_turns;
+    const std::optional<bool> agrees = fixes_agree(during, std::abs(first.speed_mps));
+    if (!gyro_stopped && agrees.value_or(false)) continue;
+    const bool is_shown = gyro_stopped || !agrees.value_or(true);
+    if (is_shown && unusual && is_long && samples.size() >= *unusual && drives(samples)) {
       found.push_back({first.stamp, samples.back().stamp, first.speed_mps, first.yaw_rate_radps,
-                       length_of(during), true, with_turns});
+                       way_of(during).steps_m, true, with_turns});
       continue;
     }
     if (duration_of(samples) < kShortestStandstill_s) continue;
@@ -263,7 +291,7 @@ void find_frozen_turns(std::span<const OdometrySample> odometry, const std::vect
     if (is_known || duration_of(samples) < kShortestOfOne_s || samples.size() < *unusual) continue;
     if (!drives(samples)) continue;
     found.push_back({from, to, samples.front().speed_mps, samples.front().yaw_rate_radps,
-                     length_of(within(fixes, from, to)), false, true});
+                     way_of(within(fixes, from, to)).steps_m, false, true});
   }
 }
 

@@ -23,14 +23,14 @@ struct FrozenOdometry {
 
 /// Finds them with the fixes of the first receiver that are not withheld.
 ///
-/// A moving vehicle seldom repeats a reading. If at most 30 % of the pairs of samples repeat their speed, 3 s
-/// of one speed above 0.5 m/s and one yaw rate are such a time, and 5 s of one speed with a yaw rate that
-/// is alive (unless the fixes have that speed: cruise control): 20 samples, and five times as many as usual. So are 5 s of one yaw rate, unless it comes from
-/// wheels or steering.
+/// A moving vehicle seldom repeats a reading. If at most 30 % of the pairs of samples repeat their speed, and as few
+/// their yaw rate, 3 s of one speed above 0.5 m/s and one yaw rate are such a time: 20 samples, and five times as many
+/// as usual. So are 5 s of one speed alone if the fixes contradict it: their chords are longer than its way, or their
+/// steps of 2 s together shorter, by 6 % and the accuracy of a fix. Without fixes it may be cruise control, or a speed
+/// of few digits. So are 5 s of one yaw rate, unless it comes from wheels or steering.
 ///
 /// Otherwise the speed is the same in each sample for 5 s or more. The fixes contradict it in at least
-/// four chords in a row, of 2 to
-/// 10 s each. Every chord differs from the odometry's distance by at least 5 m, 1 m/s and three
+/// four chords in a row, of 2 to 10 s each. Every chord differs from the odometry's distance by at least 5 m, 1 m/s and three
 /// sigmas of the fixes; all of them together by at least 30 m and ten sigmas. The chords have a
 /// common direction, within 60 degrees from each to the next: fixes of a standing receiver wander
 /// without one. If the receiver measures its speed, this speed must contradict the odometry too.

@@ -193,13 +193,8 @@ void adapt_to_scale(FusionSettings& decision, const TypeRegistry& registry, Mode
 void adapt(const PreparedDrive& drive, bool by_default, FusionSettings& decision,
            const TypeRegistry& registry) {
   if (drive.relative.empty()) adapt_to_yaw_rate(drive.yaw_rate_at_rest, by_default, decision, registry);
-  for (const PreparedOdometry& source : drive.relative) {
-    FusionSettings own = for_relative(decision, source.name);
-    adapt_to_yaw_rate(source.yaw_rate_at_rest, by_default, own, registry);
-    SourceSettings& kept = decision.sources[source.name];
-    kept.options = own.odometry_options;
-    kept.calibration = *own.calibration;
-  }
+  for (const PreparedOdometry& source : drive.relative)
+    adapt_to_yaw_rate_of(source.name, source.yaw_rate_at_rest, by_default, decision, registry);
 }
 
 /// Returns by how much the only odometry is late, if all receivers seem to know positions before they had them. What

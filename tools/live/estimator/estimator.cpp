@@ -47,9 +47,28 @@ Estimator::Estimator(drive::DriveDescription description, const drive::FusionSet
                                     drive::for_relative(setup_.settings, description_.odometry.front().name),
                                     description_.timeline.gap_noise_factor, registry_)
                                     ->standstill_speed());
+  for (std::size_t odometry = 0; odometry < description_.odometry.size(); ++odometry)
+    adapt_to_yaw_rate(odometry);
 }
 
 Estimator::~Estimator() = default;
+
+/// What is known of a yaw rate before anything was learned holds from the first pose on.
+void Estimator::adapt_to_yaw_rate(std::size_t odometry) {
+  const drive::OdometryConfig& config = description_.odometry[odometry];
+  const drive::YawRateAtRest rest{.stated_derived =
+                                      drive::is_from_wheels_or_steering(config.assembly.yaw_rate_from)};
+  const bool by_default = !stated_.calibration;
+  if (has_several_odometries())
+    drive::adapt_to_yaw_rate_of(config.name, rest, by_default, setup_.settings, registry_);
+  else
+    drive::adapt_to_yaw_rate(rest, by_default, setup_.settings, registry_);
+}
+
+void Estimator::know_yaw_rate(std::size_t odometry, std::string_view source) {
+  description_.odometry[odometry].assembly.yaw_rate_from = source;  // what is learned needs it as well
+  adapt_to_yaw_rate(odometry);
+}
 
 void Estimator::begin_with(const WarmStart& start) {
   warm_ = start;

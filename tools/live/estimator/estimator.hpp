@@ -14,6 +14,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -55,6 +56,9 @@ class Estimator {
   void learn_beside(Beside beside) { learner_.run_beside(std::move(beside)); }
   /// Ends a search when this is set, also while take() waits for it. @param stop must outlive the object
   void stop_learning_with(const std::atomic<bool>& stop) { learner_.stop_with(stop); }
+  /// Names the source of an odometry's yaw rate, if the description does not state it. Call it before its first
+  /// sample. @param odometry index in the description @param source one of drive::kYawRateSources
+  void know_yaw_rate(std::size_t odometry, std::string_view source);
   /// Begins at a pose that is known from a former run. Call it before the first sample.
   void begin_with(const WarmStart& start);
 
@@ -98,6 +102,7 @@ class Estimator {
   void drop();
   void forget_motion();
   [[nodiscard]] bool is_left_out(const Sample& sample);
+  void adapt_to_yaw_rate(std::size_t odometry);
   void learn(Stamp now);
   void begin_search(Stamp now);
   void adopt(Learned learned);

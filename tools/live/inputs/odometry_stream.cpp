@@ -1,6 +1,7 @@
 #include <waymark/tools/live/inputs/odometry_stream.hpp>
 
 #include <algorithm>
+#include <utility>
 
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/base/error.hpp>
@@ -40,7 +41,9 @@ std::vector<OdometrySample> OdometryStream::take(std::size_t part, const SensorT
     return {};
   std::vector<OdometrySample> samples;
   try {
-    samples = drive::assemble_odometry(parts_, how_, gap_s_).samples;
+    drive::AssembledOdometry assembled = drive::assemble_odometry(parts_, how_, gap_s_);
+    samples = std::move(assembled.samples);
+    yaw_rate_from_ = assembled.yaw_rate_from;
     obstacle_.clear();
   } catch (const InputError& error) {
     obstacle_ = error.what();

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <waymark/core/drive/sample.hpp>
@@ -22,6 +23,8 @@ class OdometryStream {
   [[nodiscard]] std::vector<OdometrySample> take(std::size_t part, const SensorTable& rows);
   /// Returns why nothing can be assembled yet; empty if it can.
   [[nodiscard]] const std::string& obstacle() const { return obstacle_; }
+  /// Returns the source of the yaw rate, one of drive::kYawRateSources; empty before anything is assembled.
+  [[nodiscard]] std::string_view yaw_rate_from() const { return yaw_rate_from_; }
 
  private:
   void forget_before(Stamp moment);
@@ -31,6 +34,7 @@ class OdometryStream {
   double gap_s_;
   std::optional<Stamp> last_;
   std::string obstacle_;
+  std::string_view yaw_rate_from_;
 };
 
 }  // namespace waymark::live

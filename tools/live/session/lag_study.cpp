@@ -122,7 +122,9 @@ std::vector<LagResult> study_lags(const drive::DriveFile& file, const drive::Fus
   put_nodes_first(own.description);
   drive::resolve_sensors(own.description, registry);
   own.description.state_frame(drive.frame);
-  const std::vector<Sample> samples = Session(own, {}, registry).decode_files();
+  Session session(own, {}, registry);
+  const std::vector<Sample> samples = session.decode_files();
+  own.description = session.description();
   std::vector<LagResult> results;
   for (const double window_s : windows_s) {
     if (begun) begun(window_s);

@@ -144,9 +144,21 @@ void Session::take(std::size_t input, std::string_view bytes) {
       continue;
     }
     any = any || !samples.empty();
+    name_yaw_rates();
     hand_over(std::move(samples));
   }
   if (any) watch.stop();
+}
+
+/// Names the sources of yaw rates that are found by the channels of the parts.
+void Session::name_yaw_rates() {
+  for (std::size_t odometry = 0; odometry < parts_.size(); ++odometry) {
+    std::string_view& known = file_.description.odometry[odometry].assembly.yaw_rate_from;
+    const std::string_view found = parts_[odometry].yaw_rate_from();
+    if (found.empty() || found == known) continue;
+    known = found;
+    estimator_.know_yaw_rate(odometry, found);
+  }
 }
 
 void Session::hand_over(std::vector<Sample> samples) {
@@ -175,6 +187,7 @@ std::vector<Sample> Session::decode_files() {
     for (const std::size_t channel : input.channels) append(channels_[channel].finish(projection()));
     if (!error.empty()) tell("unreadable", error);
   }
+  name_yaw_rates();
   const auto by_stamp = [](const Sample& a, const Sample& b) { return stamp_of(a) < stamp_of(b); };
   std::stable_sort(samples.begin(), samples.end(), by_stamp);
   // The first fix gives the frame, for which places and headings of sensors wait.

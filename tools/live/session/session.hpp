@@ -51,6 +51,8 @@ class Session {
 
   /// Takes bytes of an input. Empty: the sender pauses.
   void take(std::size_t input, std::string_view bytes);
+  /// Returns the description, with what the inputs so far have told of it.
+  [[nodiscard]] const drive::DriveDescription& description() const { return file_.description; }
   /// Takes a sample of a replay.
   void take(const Sample& sample);
   /// Decodes the files of all inputs. @returns their samples, sorted by stamp
@@ -83,6 +85,7 @@ class Session {
   };
   void add_channel(Channel::Role role, const drive::LogConfig& log, std::size_t index,
                    std::size_t odometry = 0);
+  void name_yaw_rates();
   void hand_over(std::vector<Sample> samples);
   void say();
   void say_to(Output& output, const Report& report, const Surroundings& around);

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <random>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <catch2/catch.hpp>
 
 #include <waymark/tools/drive/comparison/plausibility.hpp>
@@ -35,6 +37,27 @@ Scene scene(double speed_factor, double yaw_factor, int seconds = 60) {
     truth = compose(truth, se2_exp<double>(Eigen::Vector3d(10, 0, turn)));
     reckoned = compose(reckoned, se2_exp<double>(Eigen::Vector3d(10 * speed_factor, 0, turn * yaw_factor)));
   }
+  return result;
+}
+
+/// Fixes at 1 Hz; the odometry has another yaw rate on the same way.
+template <typename Turn, typename Read>
+Scene scene_of(double speed_mps, int seconds, const Turn& turn_at, const Read& read_at) {
+  Scene result;
+  Pose2<double> truth;
+  Pose2<double> reckoned;
+  for (int k = 0; k < seconds; ++k) {
+    Fix fix;
+    fix.stamp = Stamp::from_seconds(k);
+    fix.position = truth.position;
+    result.fixes.push_back(fix);
+    result.antenna.push_back(reckoned.vector());
+    truth = compose(truth, se2_exp<double>(Eigen::Vector3d(speed_mps, 0, turn_at(k))));
+    reckoned = compose(reckoned, se2_exp<double>(Eigen::Vector3d(speed_mps, 0, read_at(k))));
+  }
+  // headings are not wrapped
+  for (std::size_t k = 1; k < result.antenna.size(); ++k)
+    result.antenna[k][2] = result.antenna[k - 1][2] + read_at(static_cast<int>(k) - 1);
   return result;
 }
 
@@ -93,6 +116,43 @@ TEST_CASE("plausibility: a scale error of 5 % is named if the fixes show it") {
   for (std::size_t i = 0; i < noisy.fixes.size(); ++i)
     noisy.fixes[i].position += 15 * Eigen::Vector2d(std::sin(2.3 * double(i)), std::cos(3.1 * double(i)));
   CHECK(warnings(noisy).empty());
+}
+
+TEST_CASE("plausibility: a way that a gyro bends has shorter chords, and the right scale") {
+  const auto winds = [](int k) { return 0.02 * std::sin(0.05 * k); };
+  const auto biased = [&](int k) { return winds(k) + 0.05; };
+  CHECK(warnings(scene_of(4, 1500, winds, biased)).empty());
+  // A true error of scale is still found.
+  Scene wrong = scene_of(4, 1500, winds, biased);
+  for (Eigen::Vector3d& pose : wrong.antenna) pose.head<2>() *= 1.05;
+  REQUIRE(warnings(wrong).size() == 1);
+  CHECK_THAT(warnings(wrong)[0], Catch::Contains("1.050 times"));
+}
+
+TEST_CASE("plausibility: laps with a dead gyro have shorter chords, and the right scale") {
+  const auto laps = [](int k) { return k % 15 < 6 ? 0.0 : 0.35; };
+  const auto dead = [](int) { return 0.0; };
+  CHECK_THAT(fmt::format("{}", fmt::join(warnings(scene_of(14, 480, laps, dead)), "\n")),
+             !Catch::Contains("distances are"));
+}
+
+TEST_CASE("plausibility: noise that makes turns of a vehicle that hardly turns is no other unit") {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0, 1);
+  const auto winds = [](int k) { return 0.03 * std::sin(0.07 * k); };
+  Scene straight = scene_of(5, 1500, winds, winds);
+  std::size_t named = 0;
+  for (int drive = 0; drive < 20; ++drive) {
+    Scene noisy = straight;
+    for (Fix& fix : noisy.fixes) fix.position += 1.0 * Eigen::Vector2d(normal(random), normal(random));
+    for (const std::string& warning : warnings(noisy))
+      named += warning.find("turns are") != std::string::npos;
+  }
+  CHECK(named == 0);
+  Scene doubled = scene_of(
+      5, 1500, [](int k) { return 0.1 * std::sin(0.07 * k); },
+      [](int k) { return 0.2 * std::sin(0.07 * k); });
+  CHECK_THAT(warnings(doubled).at(0), Catch::Contains("turns are 2"));
 }
 
 TEST_CASE("plausibility: fixes with an error of 10 m do not lengthen the way of a slow vehicle") {
@@ -235,8 +295,8 @@ TEST_CASE("plausibility: of another receiver the jumps are named, unless the odo
 
 TEST_CASE("plausibility: an impossible acceleration is named without any fix") {
   std::vector<OdometrySample> odometry(100);
-  for (OdometrySample& sample : odometry) sample = {.stamp = {}, .speed_mps = 10, .yaw_rate_radps = 0.9};
-  CHECK(warning_of_accelerations(odometry).empty());  // 9 m/s^2
+  for (OdometrySample& sample : odometry) sample = {.stamp = {}, .speed_mps = 10, .yaw_rate_radps = 1.6};
+  CHECK(warning_of_accelerations(odometry).empty());  // 16 m/s^2: a racing car
   for (std::size_t i = 0; i < 6; ++i) odometry[i].yaw_rate_radps *= 57.3;
   CHECK_THAT(warning_of_accelerations(odometry), Catch::Contains("in 6 % of the driving"));
 }

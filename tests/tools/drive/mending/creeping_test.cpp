@@ -60,6 +60,21 @@ TEST_CASE("creeping: a vehicle that stands has fixes that drift, and no speed") 
   CHECK(find_creeping(made.odometry, made.fixes).empty());
 }
 
+TEST_CASE("creeping: fixes that wander while the receiver has lost its corrections are no way") {
+  WindingScene made = scene(0);
+  const Eigen::Vector2d ahead = (made.fixes[79].position - made.fixes[75].position).normalized();
+  for (std::size_t i = 0; i < made.fixes.size(); ++i) {
+    Fix& fix = made.fixes[i];
+    fix.covariance = 1e-4 * Eigen::Matrix2d::Identity();
+    if (i < 85 || i > 99) continue;
+    fix.position += 0.08 * static_cast<double>(i - 85) * ahead;
+    fix.covariance = 4 * Eigen::Matrix2d::Identity();
+  }
+  CHECK(find_creeping(made.odometry, made.fixes).empty());
+  for (Fix& fix : made.fixes) fix.covariance = 1e-4 * Eigen::Matrix2d::Identity();
+  CHECK(find_creeping(made.odometry, made.fixes).size() == 1);
+}
+
 TEST_CASE("creeping: a sensor without a dead zone is believed") {
   WindingScene made = scene(0.5);
   for (std::size_t i = 0; i < 20; ++i) made.odometry[i].speed_mps = 0.05 + 0.3 * static_cast<double>(i);

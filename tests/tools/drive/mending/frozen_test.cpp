@@ -169,6 +169,29 @@ TEST_CASE("frozen: a constant speed that the fixes have is cruise control") {
   CHECK(find_frozen_odometry(cruise.odometry, cruise.fixes).empty());
 }
 
+TEST_CASE(
+    "frozen: a constant speed in a roundabout is cruise control, though chords are shorter than its way") {
+  const auto is_round = [](double t) { return t > 30 && t < 60; };
+  const Scene round = testing::winding_scene(
+      100, [&](double t) { return is_round(t) ? 5.56 : speed_at(t); },
+      [&](double t) { return is_round(t) ? 0.3 + 0.01 * std::sin(t) : yaw_rate_at(t); });
+  CHECK(find_frozen_odometry(round.odometry, round.fixes).empty());
+}
+
+TEST_CASE("frozen: a speed alone that repeats itself while there are no fixes is not doubted") {
+  Scene tunnel = scene();
+  for (std::size_t i = 300; i <= 400; ++i) tunnel.odometry[i].speed_mps = speed_at(30);
+  REQUIRE(find_frozen_odometry(tunnel.odometry, tunnel.fixes).size() == 1);
+  std::erase_if(tunnel.fixes,
+                [](const Fix& fix) { return fix.stamp.seconds() > 29 && fix.stamp.seconds() < 41; });
+  CHECK(find_frozen_odometry(tunnel.odometry, tunnel.fixes).empty());
+  // A yaw rate that repeats itself as well is no cruise control, unless it never changes at all.
+  for (std::size_t i = 300; i <= 400; ++i) tunnel.odometry[i].yaw_rate_radps = 0.05;
+  CHECK(find_frozen_odometry(tunnel.odometry, tunnel.fixes).size() == 1);
+  for (OdometrySample& sample : tunnel.odometry) sample.yaw_rate_radps = 0;
+  CHECK(find_frozen_odometry(tunnel.odometry, tunnel.fixes).empty());
+}
+
 TEST_CASE("frozen: odometry of few digits repeats readings without a failure") {
   Scene scene;
   for (int i = 0; i <= 1000; ++i) {
