@@ -134,6 +134,29 @@ TEST_CASE("starts: points are placed from the poses that saw them") {
   }
 }
 
+TEST_CASE("starts: the linear start keeps the direction of a heading that contradictions shorten") {
+  // Two edges turn by 0 and by nearly pi. The sum of their directions is 5e-9 long and lies halfway. If it is
+  // exactly pi, nothing is halfway, and one of both edges decides.
+  const TypeRegistry registry = full_registry();
+  for (const double short_of_pi : {1e-8, 0.0}) {
+    Graph graph;
+    for (int id = 0; id < 3; ++id) graph.add_vertex<VertexSe2>(VertexId{id}, {0, 0, 0});
+    const Eigen::Matrix3d information = pose_information(0.1, 0.1);
+    const double turn = std::numbers::pi - short_of_pi;
+    graph.add_edge(EdgeSe2{{1, 0, 0}}, {0, 1}, information);
+    graph.add_edge(EdgeSe2{{1, 0, turn}}, {0, 1}, information);
+    graph.add_edge(EdgeSe2{{1, 0, 0.25}}, {1, 2}, information);
+    const Graph start = started(graph, registry, "linear");
+    const double heading = start.value(1)[2];
+    INFO(short_of_pi << ": " << heading);
+    if (short_of_pi > 0)
+      CHECK(heading == Approx(turn / 2).margin(1e-6));
+    else
+      CHECK((std::abs(heading) < 1e-9 || std::abs(wrap_angle(heading - turn)) < 1e-9));
+    CHECK(wrap_angle(start.value(2)[2] - heading - 0.25) == Approx(0).margin(1e-6));
+  }
+}
+
 TEST_CASE("starts: each part of a graph keeps the place of its first vertex") {
   const TypeRegistry registry = full_registry();
   const auto track = spiral(50);
