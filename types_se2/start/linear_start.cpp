@@ -7,6 +7,7 @@
 #include <waymark/core/system/foreign_poses.hpp>
 #include <waymark/core/system/structure.hpp>
 #include <waymark/types_se2/start/detail/least_squares.hpp>
+#include <waymark/types_se2/start/detail/points.hpp>
 #include <waymark/types_se2/start/detail/relations.hpp>
 #include <waymark/types_se2/start/detail/starts.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
@@ -262,6 +263,14 @@ class LinearStart {
     return true;
   }
 
+  /// Tells per vertex whether the linear systems have placed it. Points that are seen without a range are not.
+  [[nodiscard]] std::vector<char> placed() const {
+    std::vector<char> placed(p_.size());
+    for (VertexIndex v = 0; v < static_cast<VertexIndex>(p_.size()); ++v)
+      placed[at(v)] = graph_.fixed(v) || positions_.related[at(v)] != 0 ? 1 : 0;
+    return placed;
+  }
+
   [[nodiscard]] std::vector<double> values() const {
     std::vector<double> values = graph_.values();
     for (VertexIndex v = 0; v < static_cast<VertexIndex>(p_.size()); ++v) {
@@ -272,6 +281,7 @@ class LinearStart {
       }
       if (!graph_.fixed(v) && headings_.related[at(v)]) value[2] = std::arg(c_[at(v)].value);
     }
+    place_points(graph_, planar_sightings(graph_), placed(), values);
     return values;
   }
 
