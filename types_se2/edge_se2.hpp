@@ -147,6 +147,7 @@ struct EdgeSe2Xy {
 
   void linearize(const Pose2<double>& pose, const Vector2<double>& landmark, ErrorVector<2>& e,
                  JacobianMatrix<2, 3>& by_pose, JacobianMatrix<2, 2>& by_landmark) const;
+  [[nodiscard]] Sight sight() const { return Sight::of_place(measured); }
 
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();
 };

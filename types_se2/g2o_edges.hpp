@@ -71,6 +71,7 @@ struct EdgeBearingSe2Xy {
   }
   void linearize(const Pose2<double>& pose, const Vector2<double>& point, ErrorVector<1>& e,
                  JacobianMatrix<1, 3>& by_pose, JacobianMatrix<1, 2>& by_point) const;
+  [[nodiscard]] Sight sight() const { return Sight::of_bearing(measured); }
 
   double measured = 0;
 };
@@ -125,6 +126,9 @@ struct EdgeSe2PointXyOffset {
   }
   void linearize(const Pose2<double>& pose, const Vector2<double>& point, ErrorVector<2>& e,
                  JacobianMatrix<2, 3>& by_pose, JacobianMatrix<2, 2>& by_point) const;
+  [[nodiscard]] Sight sight() const {
+    return {.sensor = offset.head<2>(), .way = rotate(offset[2], measured)};
+  }
 
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< O: the sensor in the body frame

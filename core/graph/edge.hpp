@@ -19,14 +19,16 @@
 ///                  Jacobian<2>& J1) const;
 /// @endcode
 /// where J_k is the derivative of the error by the tangent vector of vertex k. The conformance
-/// tests compare both. A type may have two more members:
+/// tests compare both. A type may have three more members:
 /// - `static constexpr bool kRelative = true;` promises that the error does not change if all
 ///   vertices undergo one rigid motion of the plane (tested). The gauge test then skips such edges.
 ///   If both vertex types have carry() (vertex.hpp), J_0 is derived from J_1.
 /// - `void prepare();` is called once after the fields are set. It stores what depends only on the
 ///   measurement.
+/// - `Sight sight() const;` says where the second vertex, a point, is seen from the first one, a pose
+///   (core/base/sight.hpp). Initial guesses place points by it.
 ///
-/// An edge is a plain value that a graph copies. error(), linearize() and prepare() must not keep
+/// An edge is a plain value that a graph copies. error(), linearize(), prepare() and sight() must not keep
 /// state elsewhere, because several threads call them at the same time.
 #pragma once
 

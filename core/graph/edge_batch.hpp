@@ -9,6 +9,7 @@
 #include <compare>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,7 @@
 
 #include <waymark/core/base/detail/large_array.hpp>
 #include <waymark/core/base/export.hpp>
+#include <waymark/core/base/sight.hpp>
 #include <waymark/core/graph/edge.hpp>
 #include <waymark/core/graph/loss.hpp>
 
@@ -122,6 +124,9 @@ class EdgeBatchBase {
   /// Appends the numbers of an edge to `out`, in schema order.
   virtual void fields(std::size_t edge, std::vector<double>& out) const = 0;
   [[nodiscard]] virtual Eigen::MatrixXd information(std::size_t edge) const = 0;
+
+  /// Returns where an edge saw its second vertex from its first one, if the type tells.
+  [[nodiscard]] virtual std::optional<Sight> sight(std::size_t) const { return std::nullopt; }
 
   /// Returns the vertices of all edges at once. Empty for run-time arity.
   [[nodiscard]] virtual VertexTable vertex_table() const { return {}; }

@@ -6,6 +6,7 @@
 
 #include <waymark/core/base/detail/elapsed.hpp>
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/optimize/detail/equations.hpp>
 #include <waymark/core/optimize/multi_start.hpp>
 #include <waymark/core/system/gauge.hpp>
 
@@ -39,17 +40,13 @@ Size measure(const Graph& graph) {
   std::int64_t joints = 0;
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
     const EdgeBatchBase& batch = graph.batch(b);
-    const int dimension = graph.edge_type(b).error_dimension;  // 0: each edge has its own dimension
-    size.equations += dimension * static_cast<std::int64_t>(batch.size());
-    if (dimension == 0) {
-      for (std::size_t e = 0; e < batch.size(); ++e) size.equations += batch.error_dimension(e);
-    }
     for_each_edge(batch, [&](std::span<const VertexIndex> vertices) {
       std::int64_t free = 0;
       for (const VertexIndex v : vertices) free += graph.fixed(v) ? 0 : 1;
       joints += std::max<std::int64_t>(free - 1, 0);
     });
   }
+  size.equations = detail::count_equations(graph);
   size.loops = joints - (size.vertices - 1);
   return size;
 }

@@ -9,6 +9,7 @@
 #include <waymark/core/base/detail/thread_pool.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/graph/finite_check.hpp>
+#include <waymark/core/optimize/detail/equations.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/detail/information_unit.hpp>
 #include <waymark/core/system/gauge.hpp>
@@ -54,6 +55,8 @@ constexpr double kFirst = 20;
 constexpr double kAgain = 0.1;
 /// A difference of two sums below this share of chi2 is rounding, not a decrease.
 constexpr double kChi2Rounding = 1e-12;
+/// A difference so many times larger than rounding says something.
+constexpr double kNoticeable = 10;
 
 class Loop {
  public:
@@ -85,7 +88,10 @@ class Loop {
   bool step_with_whole_curvature();
   bool give_up_whole_curvature();
   IterationRecord begin_record();
+  double decrement_bound() const;
   bool converged_by(const Step& step, double step_size);
+  bool has_more_to_gain(const IterationRecord& record) const;
+  bool go_on();
   void finish(Termination termination, std::string message);
   double linearize(const std::vector<double>& values);
   void accept(double trial_chi2);
@@ -121,6 +127,8 @@ class Loop {
   bool last_accepted_ = true;
   double gradient_ = 0;
   double unit_ = 1;  // of the information: a chi2 far below it is small
+  bool has_losses_ = false;
+  double freedom_ = 0;  // equations less unknowns, >= 0
   Step step_;
   bool exhausted_ = false;                                     // the algorithm had no step left
   bool whole_curvature_ = false;                               // of the losses, in the present linearisation
@@ -147,6 +155,9 @@ void Loop::prepare() {
   summary_.vertices = graph_.vertex_count();
   summary_.edges = graph_.edge_count();
   summary_.unknowns = structure_.pattern().dimension();
+  has_losses_ = has_losses(graph_);
+  freedom_ =
+      static_cast<double>(std::max<std::int64_t>(detail::count_equations(graph_) - summary_.unknowns, 0));
   for (std::size_t b = 0; b < graph_.batch_count(); ++b) {
     if (graph_.batch(b).size() == 0) continue;
     const EdgeType& type = graph_.edge_type(b);
@@ -177,9 +188,38 @@ bool Loop::converged_at_gradient() {
   return true;
 }
 
+/// Outliers raise a robust chi2 far above what the rest of the graph adds, so that it says nothing about what is
+/// left to gain: no more than the degrees of freedom count then.
+double Loop::decrement_bound() const {
+  if (!has_losses_) return options_.decrement_tolerance * (unit_ + chi2_);
+  const double bound = options_.decrement_tolerance * (unit_ + std::min(chi2_, freedom_));
+  return std::max(bound, kNoticeable * kChi2Rounding * chi2_);
+}
+
+/// Steps that reweight losses converge linearly: if each leaves the share r of the distance, a step that promised d
+/// leaves d r^2 / (1 - r) to gain. r shows in the gain, d (1 + r), and in the decrements of two steps, d and r^2 d.
+bool Loop::has_more_to_gain(const IterationRecord& record) const {
+  if (!has_losses_ || summary_.termination != Termination::converged_decrement) return false;
+  const double promised = record.newton_decrement;
+  if (promised <= kNoticeable * kChi2Rounding * chi2_) return false;
+  double left = record.decrease / promised - 1;
+  if (!summary_.records.empty()) {
+    const IterationRecord& before = summary_.records.back();
+    if (before.accepted && before.kind == "newton")
+      left = std::max(left, std::sqrt(promised / before.newton_decrement));
+  }
+  return left >= 1 || (left > 0 && promised * left * left / (1 - left) > decrement_bound());
+}
+
+/// Takes back that the run has ended. @returns false: it has not converged
+bool Loop::go_on() {
+  done_ = false;
+  return false;
+}
+
 bool Loop::converged_by(const Step& step, double step_size) {
   if (!step.full_newton) return false;
-  const double bound = options_.decrement_tolerance * (unit_ + chi2_);
+  const double bound = decrement_bound();
   if (step.newton_decrement <= bound) {
     finish(Termination::converged_decrement,
            text("converged: Newton decrement ", step.newton_decrement, " <= ", bound));
@@ -236,8 +276,7 @@ bool Loop::converges_slowly() const {
   const IterationRecord& before = records[records.size() - 2];
   const bool full = last.accepted && before.accepted && last.kind == "newton" && before.kind == "newton";
   return full && last.newton_decrement > kSlowly * before.newton_decrement &&
-         last.newton_decrement <= std::min(kNearMinimum * (unit_ + chi2_), kAgain * tried_at_) &&
-         has_losses(graph_);
+         last.newton_decrement <= std::min(kNearMinimum * (unit_ + chi2_), kAgain * tried_at_) && has_losses_;
 }
 
 /// Goes on with the steps of the algorithm. @returns false: nothing has moved
@@ -288,7 +327,7 @@ bool Loop::step_once() {
   ProposalStatus status;
   {
     const Timer timer(summary_.solve_seconds);
-    status = algorithm_.propose(equations_, solver_, options_.decrement_tolerance * (unit_ + chi2_), step_);
+    status = algorithm_.propose(equations_, solver_, decrement_bound(), step_);
   }
   if (status == ProposalStatus::singular) {
     finish(Termination::singular, singular_message());
@@ -305,7 +344,7 @@ bool Loop::step_once() {
   IterationRecord record = begin_record();
 
   // 2. Test convergence, only on full Newton steps. The last step is still taken unless chi2 rises.
-  const bool converged = converged_by(step_, record.step);
+  bool converged = converged_by(step_, record.step);
 
   // 3. Try it. Most steps are accepted, so their chi2 comes with the next linearisation. After a
   //    rejection, and for the last step, only chi2 is computed.
@@ -314,6 +353,7 @@ bool Loop::step_once() {
   const double trial_chi2 = linearized ? linearize(trial_) : equations_.chi2(trial_);
   record.chi2 = trial_chi2;
   record.decrease = chi2_ - trial_chi2;
+  if (converged && has_more_to_gain(record)) converged = go_on();
   const double noise = kChi2Rounding * chi2_;
   const bool within_rounding = std::abs(record.decrease) <= noise && step_.predicted_decrease <= noise;
   const double ratio = within_rounding ? 1 : record.decrease / step_.predicted_decrease;

@@ -22,6 +22,8 @@ namespace WAYMARK_EXPORT waymark {
 /// step d. The unit u is 1, or the largest information of the graph if all of it is less:
 ///   gradient   max_i |g_i| / sqrt(H_ii) <= gradient_tolerance sqrt(u + chi2)
 ///   decrement  g^T H^-1 g <= decrement_tolerance (u + chi2)      the gain that the step promises
+///              With losses min(chi2, degrees of freedom) takes the place of chi2, which outliers inflate,
+///              and what is left to gain after the step, by the rate at which the steps shrink, is as small.
 ///   step       |d_i| <= step_tolerance (1 + |x|_max) for all i of the full step
 ///   chi2       chi2 <= decrement_tolerance u, if the algorithm has no step left that lowers it
 /// The gradient test, at rounding level, is for an initial guess that already is a minimum. No test but step depends on

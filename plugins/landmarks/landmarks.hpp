@@ -38,6 +38,8 @@ struct EdgeSe2XyRangeBearing {
     return Vector2<T>(range - T(measured[0]), wrap_angle(T(bearing - T(measured[1]))));
   }
 
+  [[nodiscard]] Sight sight() const { return Sight::of_range(measured[0], measured[1], sensor); }
+
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();  ///< range, bearing
   Eigen::Vector2d sensor = Eigen::Vector2d::Zero();    ///< in the body frame: x forward, y left
 };

@@ -4,6 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <waymark/plugins/landmarks/landmarks.hpp>
+#include <waymark/types_se2/g2o_edges.hpp>
+
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
@@ -131,6 +134,101 @@ TEST_CASE("starts: points are placed from the poses that saw them") {
   for (const std::string& name : start_names(registry)) {
     INFO(name);
     CHECK(started(graph, registry, name).chi2() < 1e-12);
+  }
+}
+
+TEST_CASE("starts: a point seen by range and bearing, or by bearings alone, is placed") {
+  using plugins::landmarks::EdgeSe2XyRangeBearing;
+  const TypeRegistry registry = full_registry();
+  const auto track = spiral(40);
+  const Eigen::Vector2d point(7, 9);
+  const Eigen::Vector2d sensor(1.5, -0.5);
+  Graph ranges = wild_track(track);
+  Graph bearings = ranges;
+  const VertexIndex by_range = ranges.add_vertex<VertexXy>(VertexId{1000}, {-400, 500});
+  const VertexIndex by_bearing = bearings.add_vertex<VertexXy>(VertexId{1000}, {-400, 500});
+  for (const int from : {3, 20, 27, 33}) {
+    const Pose& pose = track[static_cast<std::size_t>(from)];
+    const Eigen::Vector2d z = rotate_back(pose.heading, Eigen::Vector2d(point - pose.position));
+    const Eigen::Vector2d d = z - sensor;
+    const EdgeSe2XyRangeBearing seen{{d.norm(), std::atan2(d[1], d[0])}, sensor};
+    ranges.add_edge(seen, {from, by_range}, 25 * Eigen::Matrix2d::Identity());
+    bearings.add_edge(EdgeBearingSe2Xy{std::atan2(z[1], z[0])}, {from, by_bearing},
+                      Eigen::Matrix<double, 1, 1>::Constant(2500));
+  }
+  for (const std::string& name : start_names(registry)) {
+    INFO(name);
+    CHECK(started(ranges, registry, name).chi2() < 1e-12);
+    CHECK(started(bearings, registry, name).chi2() < 1e-12);
+  }
+}
+
+TEST_CASE("starts: false sightings of a point do not move it") {
+  // The trees take the median; the linear start is one of least squares.
+  const TypeRegistry registry = full_registry();
+  const auto track = spiral(40);
+  const Eigen::Vector2d point(7, 9);
+  Graph graph = wild_track(track);
+  const VertexIndex landmark = graph.add_vertex<VertexXy>(VertexId{1000}, {-400, 500});
+  for (const int from : {3, 8, 20, 27, 33}) {
+    const Pose& pose = track[static_cast<std::size_t>(from)];
+    const Eigen::Vector2d z = rotate_back(pose.heading, Eigen::Vector2d(point - pose.position));
+    const Eigen::Vector2d measured = from == 3 || from == 27 ? Eigen::Vector2d(-80, 30) : z;
+    graph.add_edge(EdgeSe2Xy{measured}, {from, landmark}, Eigen::Matrix2d::Identity());
+  }
+  for (const std::string name : {"odometry", "spanning_tree"}) {
+    const Graph start = started(graph, registry, name);
+    const auto& root = start.value(0);
+    const Pose moved =
+        compose(Pose(root[0], root[1], root[2]), between(track[0], Pose(point[0], point[1], 0)));
+    CHECK(start.value(landmark)[0] == Approx(moved.position[0]));
+    CHECK(start.value(landmark)[1] == Approx(moved.position[1]));
+  }
+}
+
+TEST_CASE("starts: where an edge type says that it sees a point, its error is zero") {
+  const TypeRegistry registry = full_registry();
+  std::size_t types = 0;
+  for (const auto& [type, origin] : registry.edges()) {
+    if (type.arity != 2 || type.vertex_tags[0] != VertexSe2::kTag || type.vertex_tags[1] != VertexXy::kTag)
+      continue;
+    Graph graph;
+    graph.add_vertex<VertexSe2>(VertexId{0}, {0, 0, 0});
+    graph.add_vertex<VertexXy>(VertexId{1}, {0, 0});
+    const std::vector<double> fields(static_cast<std::size_t>(type.field_size()), 0.7);
+    const std::array vertices{VertexIndex{0}, VertexIndex{1}};
+    graph.add_edge(type, vertices, fields,
+                   Eigen::MatrixXd::Identity(type.error_dimension, type.error_dimension));
+    const auto sight = graph.batch(0).sight(0);
+    INFO(type.tag);
+    REQUIRE(sight);
+    graph.set_value(1, std::array{sight->place()[0], sight->place()[1]});
+    CHECK(graph.chi2() < 1e-20);
+    ++types;
+  }
+  CHECK(types == 4);
+}
+
+TEST_CASE("starts: the linear start keeps the direction of a heading that contradictions shorten") {
+  // Two edges turn by 0 and by nearly pi. The sum of their directions is 5e-9 long and lies halfway. If it is
+  // exactly pi, nothing is halfway, and one of both edges decides.
+  const TypeRegistry registry = full_registry();
+  for (const double short_of_pi : {1e-8, 0.0}) {
+    Graph graph;
+    for (int id = 0; id < 3; ++id) graph.add_vertex<VertexSe2>(VertexId{id}, {0, 0, 0});
+    const Eigen::Matrix3d information = pose_information(0.1, 0.1);
+    const double turn = std::numbers::pi - short_of_pi;
+    graph.add_edge(EdgeSe2{{1, 0, 0}}, {0, 1}, information);
+    graph.add_edge(EdgeSe2{{1, 0, turn}}, {0, 1}, information);
+    graph.add_edge(EdgeSe2{{1, 0, 0.25}}, {1, 2}, information);
+    const Graph start = started(graph, registry, "linear");
+    const double heading = start.value(1)[2];
+    INFO(short_of_pi << ": " << heading);
+    if (short_of_pi > 0)
+      CHECK(heading == Approx(turn / 2).margin(1e-6));
+    else
+      CHECK((std::abs(heading) < 1e-9 || std::abs(wrap_angle(heading - turn)) < 1e-9));
+    CHECK(wrap_angle(start.value(2)[2] - heading - 0.25) == Approx(0).margin(1e-6));
   }
 }
 

@@ -6,6 +6,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/base/error.hpp
   core/base/guard.hpp
   core/base/export.hpp
+  core/base/sight.hpp
   core/base/suggest.hpp
   core/covariance/evidence.hpp
   core/covariance/marginals.hpp

@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include <waymark/core/system/foreign_poses.hpp>
 #include <waymark/core/system/structure.hpp>
 #include <waymark/types_se2/start/detail/least_squares.hpp>
+#include <waymark/types_se2/start/detail/points.hpp>
 #include <waymark/types_se2/start/detail/relations.hpp>
 #include <waymark/types_se2/start/detail/starts.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
@@ -193,14 +196,51 @@ class LinearStart {
     }
     const auto solution = system.solve();
     if (!solution) return false;
-    for (Quantity& c : c_) {
-      if (c.index < 0) continue;
-      const Complex relaxed = (*solution)[at(c.index)];
-      if (!(std::abs(relaxed) > kVanished)) return false;
-      c = {-1, relaxed / std::abs(relaxed)};
+    std::vector<char> open(c_.size(), 0);
+    // Turns are rounded too, and headings that are known have length 1.
+    const double shortest = kDistinct * std::max(solution->rounding, std::numeric_limits<double>::epsilon());
+    for (std::size_t v = 0; v < c_.size(); ++v) {
+      if (c_[v].index < 0) continue;
+      const Complex relaxed = solution->unknowns[at(c_[v].index)];
+      const double length = std::abs(relaxed);
+      open[v] = length > shortest ? 0 : 1;
+      c_[v] = {-1, open[v] != 0 ? 0 : relaxed / length};
     }
     for (Quantity& p : p_) p.index = -1;
-    return true;
+    return close_gaps(std::move(open));
+  }
+
+  /// Gives a heading that vanishes in rounding (contradictory edges shorten relaxed headings) the direction that
+  /// an edge to a neighbour says, along the fewest edges. @returns false: some have none
+  bool close_gaps(std::vector<char> open) {
+    if (std::find(open.begin(), open.end(), 1) == open.end()) return true;
+    std::vector<std::vector<const Relation*>> edges(open.size());
+    std::vector<VertexIndex> queue;
+    const auto close = [&](VertexIndex v, Complex heading) {
+      open[at(v)] = 0;
+      c_[at(v)].value = heading;
+      queue.push_back(v);
+    };
+    for (const Relation& r : relations_) {
+      if (!(r.heading_weight > 0)) continue;
+      edges[at(r.to)].push_back(&r);
+      if (r.from != Relation::kWorld)
+        edges[at(r.from)].push_back(&r);
+      else if (open[at(r.to)] != 0)
+        close(r.to, std::polar(1.0, r.turn));
+    }
+    for (VertexIndex v = 0; v < static_cast<VertexIndex>(open.size()); ++v)
+      if (open[at(v)] == 0 && !edges[at(v)].empty()) queue.push_back(v);
+    for (std::size_t next = 0; next < queue.size(); ++next) {
+      const VertexIndex v = queue[next];
+      const Complex heading = c_[at(v)].value;
+      for (const Relation* r : edges[at(v)]) {
+        if (r->from == v && open[at(r->to)] != 0) close(r->to, heading * std::polar(1.0, r->turn));
+        if (r->to == v && r->from != Relation::kWorld && open[at(r->from)] != 0)
+          close(r->from, heading * std::polar(1.0, -r->turn));
+      }
+    }
+    return std::find(open.begin(), open.end(), 1) == open.end();
   }
 
   bool solve_positions() {
@@ -218,9 +258,17 @@ class LinearStart {
     const auto solution = system.solve();
     if (!solution) return false;
     for (Quantity& p : p_) {
-      if (p.index >= 0) p.value = (*solution)[at(p.index)];
+      if (p.index >= 0) p.value = solution->unknowns[at(p.index)];
     }
     return true;
+  }
+
+  /// Tells per vertex whether the linear systems have placed it. Points that are seen without a range are not.
+  [[nodiscard]] std::vector<char> placed() const {
+    std::vector<char> placed(p_.size());
+    for (VertexIndex v = 0; v < static_cast<VertexIndex>(p_.size()); ++v)
+      placed[at(v)] = graph_.fixed(v) || positions_.related[at(v)] != 0 ? 1 : 0;
+    return placed;
   }
 
   [[nodiscard]] std::vector<double> values() const {
@@ -233,11 +281,13 @@ class LinearStart {
       }
       if (!graph_.fixed(v) && headings_.related[at(v)]) value[2] = std::arg(c_[at(v)].value);
     }
+    place_points(graph_, planar_sightings(graph_), placed(), values);
     return values;
   }
 
-  /// A relaxed heading shorter than this has no direction.
-  static constexpr double kVanished = 1e-6;
+  /// A relaxed heading has a direction if it is so many times longer than the errors of rounding. In graphs of
+  /// much noise short ones have one as well.
+  static constexpr double kDistinct = 100;
 
   const Graph& graph_;
   std::vector<Relation> relations_;

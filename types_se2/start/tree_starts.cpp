@@ -3,9 +3,9 @@
 #include <tuple>
 
 #include <waymark/core/system/foreign_poses.hpp>
+#include <waymark/types_se2/start/detail/points.hpp>
 #include <waymark/types_se2/start/detail/relations.hpp>
 #include <waymark/types_se2/start/detail/starts.hpp>
-#include <waymark/types_se2/vertex_se2.hpp>
 
 namespace waymark {
 namespace {
@@ -30,11 +30,7 @@ class Tree {
         branches_(graph.vertex_count()),
         placed_(graph.vertex_count()) {
     for (const Relation& relation : planar_relations(graph)) {
-      if (relation.from == Relation::kWorld) continue;
-      if (!relation.is_motion()) {
-        if (graph.vertex_type(relation.to).tag == VertexXy::kTag) sightings_.push_back(relation);
-        continue;
-      }
+      if (relation.from == Relation::kWorld || !relation.is_motion()) continue;
       const Pose2<double> motion(relation.translation, relation.turn);
       const double variance = 1 / relation.heading_weight;
       branches_[at(relation.from)].push_back({relation.to, motion, variance});
@@ -71,18 +67,8 @@ class Tree {
     moved[2] = wrap_angle(pose.heading);
   }
 
-  /// Places each point where the first placed pose saw it.
-  void place_points() {
-    for (const Relation& sighting : sightings_) {
-      if (placed(sighting.to) || !placed(sighting.from)) continue;
-      placed_[at(sighting.to)] = 1;
-      if (graph_.fixed(sighting.to)) continue;
-      const double* pose = value(sighting.from);
-      const Eigen::Vector2d offset = rotate(pose[2], sighting.translation);
-      value(sighting.to)[0] = pose[0] + offset[0];
-      value(sighting.to)[1] = pose[1] + offset[1];
-    }
-  }
+  /// Places the points that placed poses saw.
+  void place_points() { waymark::place_points(graph_, planar_sightings(graph_), placed_, values_); }
 
   /// Counts the free poses that can be placed and are not placed yet.
   [[nodiscard]] std::size_t waiting() const {
@@ -102,7 +88,6 @@ class Tree {
   std::vector<double> values_;
   std::vector<std::vector<Branch>> branches_;
   std::vector<char> placed_;
-  std::vector<Relation> sightings_;
 };
 
 /// Places poses along consecutive vertices, both ways from the root, and then along the

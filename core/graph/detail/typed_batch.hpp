@@ -82,6 +82,14 @@ class EdgeBatch final : public EdgeBatchBase {
 
   [[nodiscard]] Eigen::MatrixXd information(std::size_t i) const override { return square(records_[i]); }
 
+  [[nodiscard]] std::optional<Sight> sight(std::size_t i) const override {
+    if constexpr (requires(const E& edge) { edge.sight(); }) {
+      return records_[i].edge.sight();
+    } else {
+      return std::nullopt;
+    }
+  }
+
   using EdgeBatchBase::chi2;
   [[nodiscard]] double chi2(const ValueView& view, EdgeRange range) const override {
     return this->named(E::kTag, view, range, [&] {

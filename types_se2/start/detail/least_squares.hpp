@@ -48,18 +48,28 @@ class LeastSquares {
     }
   }
 
+  /// The unknowns, and the largest error that rounding has left in them.
+  struct Solution {
+    std::vector<Complex> unknowns;
+    double rounding = 0;
+  };
+
   /// Returns the unknowns, or nothing if the equations do not determine them.
-  [[nodiscard]] std::optional<std::vector<Complex>> solve() {
-    std::vector<Complex> solution = right_;
+  [[nodiscard]] std::optional<Solution> solve() {
+    Solution solution{.unknowns = right_};
     if (unknowns_ == 0) return solution;
     const std::vector<double> numbers = assemble();
     BlockCholesky factor;
     factor.analyze(pattern_);
     if (factor.factorize(numbers) != FactorStatus::ok) return std::nullopt;
-    const std::span<double> real(reinterpret_cast<double*>(solution.data()), 2 * solution.size());
-    factor.solve(real, real);
-    for (const Complex& q : solution) {
-      if (!std::isfinite(q.real() + q.imag())) return std::nullopt;
+    solve_by(factor, solution.unknowns);
+    // A step of iterative refinement is about as large as the errors. It is not taken: where weights differ by
+    // many orders of magnitude, the solution is better than its residual.
+    std::vector<Complex> correction = residual(solution.unknowns);
+    solve_by(factor, correction);
+    for (std::size_t k = 0; k < correction.size(); ++k) {
+      solution.rounding = std::max(solution.rounding, std::abs(correction[k]));
+      if (!std::isfinite(std::abs(solution.unknowns[k]))) return std::nullopt;
     }
     return solution;
   }
@@ -71,6 +81,23 @@ class LeastSquares {
     int column = 0;
     Complex value = 0;
   };
+
+  static void solve_by(BlockCholesky& factor, std::vector<Complex>& right) {
+    const std::span<double> real(reinterpret_cast<double*>(right.data()), 2 * right.size());
+    factor.solve(real, real);
+  }
+
+  /// Returns what the normal equations leave at these unknowns: right side minus left side.
+  [[nodiscard]] std::vector<Complex> residual(const std::vector<Complex>& unknowns) const {
+    std::vector<Complex> rest = right_;
+    for (const Addend& addend : normal_) {
+      const auto row = static_cast<std::size_t>(addend.row);
+      const auto column = static_cast<std::size_t>(addend.column);
+      rest[row] -= addend.value * unknowns[column];
+      if (row != column) rest[column] -= std::conj(addend.value) * unknowns[row];
+    }
+    return rest;
+  }
 
   /// Assembles the normal matrix over real and imaginary parts: a complex number z is the block [re
   /// -im; im re]. The result is the upper triangle, so it holds the conjugates of the addends.

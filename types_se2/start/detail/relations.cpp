@@ -8,6 +8,7 @@
 #include <waymark/types_se2/edge_gnss.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 #include <waymark/types_se2/g2o_edges.hpp>
+#include <waymark/types_se2/start/detail/sightings.hpp>
 
 namespace waymark {
 namespace {
@@ -44,25 +45,9 @@ Relation pose_prior(std::span<const VertexIndex> v, const std::vector<double>& f
           .heading_weight = information(2, 2)};
 }
 
-Relation point_seen(std::span<const VertexIndex> v, const std::vector<double>& fields,
-                    const Eigen::MatrixXd& information) {
-  return {.from = v[0],
-          .to = v[1],
-          .translation = {fields[0], fields[1]},
-          .position_weight = position_weight(information)};
-}
-
 Relation position_prior(std::span<const VertexIndex> v, const std::vector<double>& fields,
                         const Eigen::MatrixXd& information) {
   return {.to = v[0], .translation = {fields[0], fields[1]}, .position_weight = position_weight(information)};
-}
-
-/// With the fields measured and offset: returns the point as the body would have seen it.
-Relation point_seen_by_sensor(std::span<const VertexIndex> v, const std::vector<double>& fields,
-                              const Eigen::MatrixXd& information) {
-  Relation relation = point_seen(v, fields, information);
-  relation.translation = Eigen::Vector2d(fields[2], fields[3]) + rotate(fields[4], relation.translation);
-  return relation;
 }
 
 using ReadFields = Relation (*)(std::span<const VertexIndex>, const std::vector<double>&,
@@ -74,9 +59,7 @@ ReadFields known_type(const std::string& tag) {
   // Types that extend this one (by a delay, by biases) keep its first vertices and fields.
   if (tag.starts_with(EdgeGnssPosition::kTag)) return gnss_position;
   if (tag == EdgePriorSe2::kTag) return pose_prior;
-  if (tag == EdgeSe2Xy::kTag) return point_seen;
   if (tag == EdgePriorSe2Xy::kTag || tag == EdgePriorXy::kTag) return position_prior;
-  if (tag == EdgeSe2PointXyOffset::kTag) return point_seen_by_sensor;
   return nullptr;
 }
 
@@ -152,6 +135,13 @@ std::vector<Relation> planar_relations(const Graph& graph) {
       if (!finder) finder.emplace(graph);
       if (const auto relation = finder->find(batch, e)) relations.push_back(*relation);
     }
+  }
+  for (const Sighting& seen : planar_sightings(graph)) {
+    if (!seen.sight.has_range) continue;
+    relations.push_back({.from = seen.from,
+                         .to = seen.to,
+                         .translation = seen.sight.place(),
+                         .position_weight = seen.position_weight});
   }
   return relations;
 }

@@ -32,8 +32,8 @@ struct Relation {
 };
 
 /// Returns the relations of a graph, batch by batch. EDGE_SE2, EDGE_SE2_LOG, EDGE_GNSS_POSITION,
-/// EDGE_PRIOR_SE2, EDGE_SE2_XY, EDGE_PRIOR_SE2_XY, EDGE_PRIOR_XY and EDGE_SE2_POINTXY_OFFSET are
-/// read from their fields. An edge of another type counts if it joins two poses and has a
+/// EDGE_PRIOR_SE2, EDGE_PRIOR_SE2_XY and EDGE_PRIOR_XY are read from their fields, sightings with a
+/// range from their sights. An edge of another type counts if it joins two poses and has a
 /// three-dimensional error. It may also join vertices that are no poses; these keep their present
 /// values. Its motion is the one at which the error vanishes; Newton's method finds it. All other
 /// edges are left out. Losses are ignored.
