@@ -201,7 +201,7 @@ double Loop::decrement_bound() const {
 bool Loop::has_more_to_gain(const IterationRecord& record) const {
   if (!has_losses_ || summary_.termination != Termination::converged_decrement) return false;
   const double promised = record.newton_decrement;
-  if (promised <= kNoticeable * kChi2Rounding * chi2_) return false;
+  if (promised <= kNoticeable * kChi2Rounding * chi2_ || record.decrease < 0) return false;
   double left = record.decrease / promised - 1;
   if (!summary_.records.empty()) {
     const IterationRecord& before = summary_.records.back();

@@ -284,9 +284,16 @@ std::vector<Options*> options_with(const NoiseParameter& parameter, FusionSettin
 
 }  // namespace
 
-bool NoiseEstimate::odometry_is_poor() const {
+bool NoiseEstimate::is_poor_odometry(const std::string& name) const {
+  return std::any_of(parameters.begin(), parameters.end(), [&](const NoiseParameter& of) {
+    return of.reach > kUsualNoise && (of.source.empty() || of.source == name) &&
+           coordinate_of(of.value, of.prior) > kUsualNoise;
+  });
+}
+
+bool NoiseEstimate::fixes_are_poor() const {
   return std::any_of(parameters.begin(), parameters.end(), [](const NoiseParameter& of) {
-    return of.reach > kUsualNoise && coordinate_of(of.value, of.prior) > kUsualNoise;
+    return of.reach == kUsualNoise && !of.prior.linear && coordinate_of(of.value, of.prior) > kFar;
   });
 }
 
@@ -302,7 +309,7 @@ NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const Prepared
     else if (is_new)
       begin_with_piece(part, registry, between, objective, part.noise);
     minimize(objective, part.noise);
-    part.noise.cost = objective.at(part.noise);
+    if (part.has_absolute) part.noise.cost = objective.at(part.noise);
     part.noise.evaluations = objective.evaluations();
   });
 }
@@ -311,14 +318,17 @@ bool may_be_poor_odometry(const PlacedDrive& along, std::span<const PreparedSens
                           const FusionSettings& settings, const TypeRegistry& registry,
                           const NoiseEstimate& noise) {
   constexpr double kOfEachFix = 2.5;
+  const bool any_open = std::any_of(noise.parameters.begin(), noise.parameters.end(),
+                                    [](const NoiseParameter& of) { return of.reach > kUsualNoise; });
+  if (!any_open) return false;
   if (coordinates_of(noise).maxCoeff() > kFar) return true;
   double rise = -noise.cost;
   std::size_t fixes = 0;
   visit_parts(along, sensors, settings, registry, [&](Part& part) {
+    if (!part.has_absolute) return;
     NoiseObjective objective(part.coarse, part.settings, registry, {});
-    take_known(noise, part.noise);
-    rise += part.has_absolute ? begin_with_poor_odometry(objective, part.noise) : objective.at(part.noise);
-    if (part.has_absolute) fixes = part.coarse.drive.fixes.size();
+    rise += begin_with_poor_odometry(objective, part.noise);
+    fixes = part.coarse.drive.fixes.size();
   });
   return rise < kOfEachFix * static_cast<double>(fixes);
 }

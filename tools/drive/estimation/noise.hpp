@@ -54,12 +54,14 @@ struct NoiseEstimate {
   /// n x n, of -log of prior times likelihood by coordinates (noise_objective.hpp), as the search left it
   Eigen::MatrixXd curvature;
   std::vector<PoseSpread> spread;  ///< in order of time; empty: not known
-  double cost = 0;                 ///< -log of prior times likelihood, of all parts of the drive
+  double cost = 0;                 ///< -log of prior times likelihood, with the first relative source
   int evaluations = 0;             ///< evaluations of the marginal likelihood
   double seconds = 0;
 
-  /// Tells whether an odometry was given more noise than a sound one may have.
-  [[nodiscard]] bool odometry_is_poor() const;
+  /// Tells whether an odometry was given more noise than a sound one may have. @param name of the source
+  [[nodiscard]] bool is_poor_odometry(const std::string& name) const;
+  /// Tells whether fixes were given far more noise than they claim (2.5 deviations of a prior).
+  [[nodiscard]] bool fixes_are_poor() const;
 };
 
 /// Maximises prior times marginal likelihood over the options with a prior that the settings do not

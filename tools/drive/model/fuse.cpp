@@ -203,7 +203,7 @@ double late_odometry(const std::vector<std::optional<TimeOffset>>& offsets, cons
                      const FusionSettings& stated, const std::vector<AbsoluteGroup>& groups) {
   constexpr double kDeviations = 4;
   constexpr double kLeast_s = 0.02;
-  if (!drive.relative.empty() || groups.empty()) return 0;
+  if (!drive.relative.empty() || !drive.sensors.empty() || groups.empty()) return 0;
   double late_s = std::numeric_limits<double>::infinity();
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const bool is_open = is_delay_open(groups[g], stated) && offsets[g] &&
@@ -217,18 +217,18 @@ double late_odometry(const std::vector<std::optional<TimeOffset>>& offsets, cons
   return late_s;
 }
 
-/// Returns the drive with earlier stamps of the odometry, less the fixes that then lie after it.
+/// Returns the drive with earlier stamps of the odometry. Its last reading holds until the former end.
 PreparedDrive with_odometry_moved(PreparedDrive drive, double late_s) {
+  OdometrySample last = drive.odometry.back();
   for (OdometrySample& sample : drive.odometry) sample.stamp = sample.stamp.later(-late_s);
-  const Stamp end = drive.odometry.back().stamp;
-  std::erase_if(drive.fixes, [&](const Fix& fix) { return fix.stamp > end; });
+  drive.odometry.push_back(std::move(last));
   return drive;
 }
 
 std::string words_for_late_odometry(double late_s) {
   return fmt::format(
-      "the odometry is {:.3f} s late beside the fixes, which cannot be early: its stamps are moved by that; state "
-      "'time: {{offset: {:.3f}}}' for its logs, or the 'delay' of the receiver if its stamps are wrong",
+      "the odometry is {:.3f} s late beside the fixes, which cannot be early: its stamps are moved by that; add "
+      "{:.3f} to the 'time: {{offset}}' of its logs, or state the 'delay' of the receiver if its stamps are wrong",
       late_s, -late_s);
 }
 
@@ -274,7 +274,7 @@ ModeledDrive Fusion::estimated_from(PlacedDrive placed, const FusionSettings& se
   if (modeled.placed.start.follows_fixes) (void)leave_out_unseen(settings, decision, modeled);
   TimeOffsetSearch delays(modeled.placed, drive_.sensors, registry_, between_);
   const auto offsets = estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
-  const bool left_out = modeled.noise.odometry_is_poor()
+  const bool left_out = modeled.noise.is_poor_odometry(modeled.placed.odometry_name)
                             ? leave_out_unseen(settings, decision, modeled)
                             : leave_out_improbable(offsets, settings, decision, modeled);
   if (left_out) (void)estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
@@ -287,6 +287,7 @@ ModeledDrive Fusion::estimated_from(PlacedDrive placed, const FusionSettings& se
 std::optional<ModeledDrive> Fusion::along_fixes(const PlacedDrive& usual, const FusionSettings& settings,
                                                 const ModeledDrive& modeled) {
   constexpr double kClearly = 1;
+  constexpr double kNearly = -20;    // against a sound odometry it is hundreds
   constexpr double kOfAnother = 10;  // less is the same minimum without a delay
   if (usual.fixes.empty() || settings.initial_guess != StartOptions()) return std::nullopt;
   PlacedDrive along = usual;
@@ -295,7 +296,11 @@ std::optional<ModeledDrive> Fusion::along_fixes(const PlacedDrive& usual, const 
     return std::nullopt;
   ModeledDrive other = estimated_from(std::move(along), settings);
   const double gain = modeled.noise.cost - other.noise.cost;
-  if (!(gain > (other.noise.odometry_is_poor() ? kClearly : kOfAnother))) return std::nullopt;
+  const bool is_poor = other.noise.is_poor_odometry(usual.odometry_name);
+  // Few fixes of a dead odometry fit receivers that are tens of metres wrong as well; those are rarer.
+  const bool spares_fixes = is_poor && modeled.noise.fixes_are_poor() && !other.noise.fixes_are_poor();
+  const double least = spares_fixes ? kNearly : is_poor ? kClearly : kOfAnother;
+  if (!(gain > least)) return std::nullopt;
   return other;
 }
 
@@ -304,7 +309,7 @@ ModeledDrive Fusion::searched(const FusionSettings& settings) {
   ModeledDrive modeled = estimated_from(usual, settings);
   if (modeled.noise.parameters.empty()) return modeled;
   if (std::optional<ModeledDrive> other = along_fixes(usual, settings, modeled)) modeled = std::move(*other);
-  if (modeled.noise.odometry_is_poor())
+  if (modeled.noise.is_poor_odometry(modeled.placed.odometry_name))
     modeled.placed.warnings.push_back(words_for_poor_odometry(modeled.placed));
   return modeled;
 }
@@ -324,7 +329,9 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   refuse_misreading(placed(decision_on(settings)));
   ModeledDrive modeled = searched(settings);
   if (const double late_s = modeled.odometry_late_s; late_s > 0) {
-    modeled = Fusion(with_odometry_moved(drive_, late_s), registry_, between_).searched(settings);
+    const PreparedDrive moved = with_odometry_moved(drive_, late_s);
+    modeled = Fusion(moved, registry_, between_).searched(settings);
+    modeled.odometry_late_s = late_s;
     modeled.placed.warnings.push_back(words_for_late_odometry(late_s));
   }
   add_deviations(modeled);
@@ -344,6 +351,10 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   document.fixes = modeled.placed.fixes;
   document.provenance = provenance_of(drive_, modeled, registry_);
   return modeled;
+}
+
+PreparedDrive on_clock_of(const ModeledDrive& modeled, const PreparedDrive& drive) {
+  return modeled.odometry_late_s > 0 ? with_odometry_moved(drive, modeled.odometry_late_s) : drive;
 }
 
 void add_covariances(ModeledDrive& modeled, const std::string& which) {

@@ -127,6 +127,10 @@ class Fusion {
   std::list<std::pair<Key, PlacedDrive>> placed_;
 };
 
+/// Returns a drive with the stamps of its odometry where a model of it has moved them: what is fused again for a
+/// comparison must be the same.
+[[nodiscard]] PreparedDrive on_clock_of(const ModeledDrive& modeled, const PreparedDrive& drive);
+
 /// Fills the covariances of a drive at its minimum. Those of poses contain what is not known of the noise
 /// (noise_spread.hpp). Errors are those of add_covariances() of a document.
 /// @param which "none", "fixes" or "all"
