@@ -234,7 +234,7 @@ void append(const NoiseEstimate& part, NoiseEstimate& noise) {
   const auto size = static_cast<Eigen::Index>(noise.parameters.size());
   Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(size, size);
   curvature.topLeftCorner(before, before) = noise.curvature;
-  curvature.bottomRightCorner(size - before, size - before) = part.curvature;
+  if (part.curvature.size() > 0) curvature.bottomRightCorner(size - before, size - before) = part.curvature;
   noise.curvature = std::move(curvature);
 }
 
