@@ -191,9 +191,10 @@ bool Loop::converged_at_gradient() {
 /// Outliers raise a robust chi2 far above what the rest of the graph adds, so that it says nothing about what is
 /// left to gain: no more than the degrees of freedom count then.
 double Loop::decrement_bound() const {
-  if (!has_losses_) return options_.decrement_tolerance * (unit_ + chi2_);
+  const double usual = options_.decrement_tolerance * (unit_ + chi2_);
+  if (!has_losses_) return usual;
   const double bound = options_.decrement_tolerance * (unit_ + std::min(chi2_, freedom_));
-  return std::max(bound, kNoticeable * kChi2Rounding * chi2_);
+  return std::max(bound, std::min(usual, kNoticeable * kChi2Rounding * chi2_));
 }
 
 /// Steps that reweight losses converge linearly: if each leaves the share r of the distance, a step that promised d
