@@ -217,18 +217,11 @@ double late_odometry(const std::vector<std::optional<TimeOffset>>& offsets, cons
   return late_s;
 }
 
-/// Returns the drive with earlier stamps of the odometry. Its last reading holds until the former end.
-PreparedDrive with_odometry_moved(PreparedDrive drive, double late_s) {
-  OdometrySample last = drive.odometry.back();
-  for (OdometrySample& sample : drive.odometry) sample.stamp = sample.stamp.later(-late_s);
-  drive.odometry.push_back(std::move(last));
-  return drive;
-}
-
 std::string words_for_late_odometry(double late_s) {
   return fmt::format(
-      "the odometry is {:.3f} s late beside the fixes, which cannot be early: its stamps are moved by that; add "
-      "{:.3f} to the 'time: {{offset}}' of its logs, or state the 'delay' of the receiver if its stamps are wrong",
+      "the fixes seem to know positions {:.3f} s before the vehicle had them. Receivers have the clock of GNSS and "
+      "are never early, so the odometry is probably late: add {:.3f} to the 'time: {{offset}}' of its logs, or the "
+      "results are late by that as well; if the stamps of the receiver are wrong, state its 'delay'",
       late_s, -late_s);
 }
 
@@ -328,12 +321,8 @@ ModeledDrive Fusion::estimated(const FusionSettings& settings) {
 ModeledDrive Fusion::model(const FusionSettings& settings) {
   refuse_misreading(placed(decision_on(settings)));
   ModeledDrive modeled = searched(settings);
-  if (const double late_s = modeled.odometry_late_s; late_s > 0) {
-    const PreparedDrive moved = with_odometry_moved(drive_, late_s);
-    modeled = Fusion(moved, registry_, between_).searched(settings);
-    modeled.odometry_late_s = late_s;
-    modeled.placed.warnings.push_back(words_for_late_odometry(late_s));
-  }
+  if (modeled.odometry_late_s > 0)
+    modeled.placed.warnings.push_back(words_for_late_odometry(modeled.odometry_late_s));
   add_deviations(modeled);
   BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);
@@ -351,10 +340,6 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   document.fixes = modeled.placed.fixes;
   document.provenance = provenance_of(drive_, modeled, registry_);
   return modeled;
-}
-
-PreparedDrive on_clock_of(const ModeledDrive& modeled, const PreparedDrive& drive) {
-  return modeled.odometry_late_s > 0 ? with_odometry_moved(drive, modeled.odometry_late_s) : drive;
 }
 
 void add_covariances(ModeledDrive& modeled, const std::string& which) {

@@ -86,12 +86,10 @@ class Fusion {
   Fusion(const PreparedDrive& drive, const TypeRegistry& registry, std::function<void()> between = {})
       : drive_(drive), registry_(registry), between_(std::move(between)) {}
 
-  /// Does the steps before the graph: placing, delays and noise. The document is empty. An odometry whose stamps are
-  /// late is not moved: what was found fits the drive as it goes on.
+  /// Does the steps before the graph: placing, delays and noise. The document is empty.
   /// @throws errors of the steps
   [[nodiscard]] ModeledDrive estimated(const FusionSettings& settings);
-  /// Does the steps up to the graph. An odometry whose stamps are late is moved to the clock of the fixes: receivers
-  /// have that of GNSS, may be late, and are never early.
+  /// Does the steps up to the graph. An odometry whose stamps seem to be late is told.
   /// @throws InputError if the odometry or the positions were read in a wrong unit or sense (misreading.hpp);
   /// errors of the steps
   [[nodiscard]] ModeledDrive model(const FusionSettings& settings);
@@ -126,10 +124,6 @@ class Fusion {
   std::optional<Timeline> timeline_;
   std::list<std::pair<Key, PlacedDrive>> placed_;
 };
-
-/// Returns a drive with the stamps of its odometry where a model of it has moved them: what is fused again for a
-/// comparison must be the same.
-[[nodiscard]] PreparedDrive on_clock_of(const ModeledDrive& modeled, const PreparedDrive& drive);
 
 /// Fills the covariances of a drive at its minimum. Those of poses contain what is not known of the noise
 /// (noise_spread.hpp). Errors are those of add_covariances() of a document.

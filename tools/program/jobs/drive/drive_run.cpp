@@ -115,11 +115,9 @@ evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, drive::ModeledDri
       evaluation.prediction = lasting->statistics;
   }
   if (summary.converged())
-    evaluation.sources = compare_sources(drive::on_clock_of(modeled, run.loaded.drive), modeled, evaluation,
-                                         run.registry, run.console);
+    evaluation.sources = compare_sources(run.loaded.drive, modeled, evaluation, run.registry, run.console);
   if (summary.converged())
-    evaluation.held_out =
-        hold_out(drive::on_clock_of(modeled, run.loaded.drive), modeled, run.registry, run.console);
+    evaluation.held_out = hold_out(run.loaded.drive, modeled, run.registry, run.console);
   return evaluation;
 }
 
