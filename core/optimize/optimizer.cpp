@@ -91,7 +91,6 @@ class Loop {
   double decrement_bound() const;
   bool converged_by(const Step& step, double step_size);
   bool has_more_to_gain(const IterationRecord& record) const;
-  bool go_on();
   void finish(Termination termination, std::string message);
   double linearize(const std::vector<double>& values);
   void accept(double trial_chi2);
@@ -210,12 +209,6 @@ bool Loop::has_more_to_gain(const IterationRecord& record) const {
       left = std::max(left, std::sqrt(promised / before.newton_decrement));
   }
   return left >= 1 || (left > 0 && promised * left * left / (1 - left) > decrement_bound());
-}
-
-/// Takes back that the run has ended. @returns false: it has not converged
-bool Loop::go_on() {
-  done_ = false;
-  return false;
 }
 
 bool Loop::converged_by(const Step& step, double step_size) {
@@ -354,7 +347,7 @@ bool Loop::step_once() {
   const double trial_chi2 = linearized ? linearize(trial_) : equations_.chi2(trial_);
   record.chi2 = trial_chi2;
   record.decrease = chi2_ - trial_chi2;
-  if (converged && has_more_to_gain(record)) converged = go_on();
+  if (converged && has_more_to_gain(record)) converged = done_ = false;
   const double noise = kChi2Rounding * chi2_;
   const bool within_rounding = std::abs(record.decrease) <= noise && step_.predicted_decrease <= noise;
   const double ratio = within_rounding ? 1 : record.decrease / step_.predicted_decrease;

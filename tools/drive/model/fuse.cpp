@@ -53,6 +53,11 @@ std::string of_several(const AbsoluteGroup& group, const ModeledDrive& modeled) 
   return modeled.placed.receivers.size() > 1 ? group.name + ": " : std::string();
 }
 
+/// The same for the odometry that gives the nodes.
+std::string of_several(const PlacedDrive& placed) {
+  return placed.runs.empty() ? std::string() : placed.odometry_name + ": ";
+}
+
 /// Takes the fixes of a group as measured when their stamps say.
 void leave_out(const AbsoluteGroup& group, FusionSettings& settings, ModeledDrive& modeled) {
   if (modeled.placed.receivers.size() > 1 || settings.sources.contains(group.name)) {
@@ -167,7 +172,7 @@ std::vector<formats::DocumentSource> document_sources(const PreparedDrive& drive
 /// @throws InputError if the drive was read wrong
 void refuse_misreading(const PlacedDrive& placed) {
   if (placed.misreading.empty()) return;
-  throw InputError((placed.runs.empty() ? "" : placed.odometry_name + ": ") + placed.misreading);
+  throw InputError(of_several(placed) + placed.misreading);
 }
 
 /// Widens the prior of the scale of the odometry that gives the nodes, which is that of a sound one, to what the fixes
@@ -186,7 +191,7 @@ void adapt_to_scale(FusionSettings& decision, const TypeRegistry& registry, Mode
   options[kPrior] = shortest(std::abs(1 / factor - 1));
   modeled.notes.push_back(
       fmt::format("{}speed_scale_sigma is taken as {:.2g}, because the distances differ by that",
-                  placed.runs.empty() ? "" : placed.odometry_name + ": ", std::abs(1 / factor - 1)));
+                  of_several(placed), std::abs(1 / factor - 1)));
 }
 
 /// Adapts the settings to the yaw rate of each relative source.
@@ -226,10 +231,9 @@ std::string words_for_late_odometry(double late_s) {
 }
 
 std::string words_for_poor_odometry(const PlacedDrive& placed) {
-  return (placed.runs.empty() ? "" : placed.odometry_name + ": ") +
-         std::string(
-             "the odometry does not move as the fixes do (a gyro that is dead, wheels that slip, a wrong "
-             "scale): it is given little weight, and the result follows the fixes");
+  return of_several(placed) +
+         "the odometry does not move as the fixes do (a gyro that is dead, wheels that slip, a wrong scale): it is "
+         "given little weight, and the result follows the fixes";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark {
@@ -76,9 +77,7 @@ Eigen::Vector2d median(const Places& places) {
   for (int axis = 0; axis < 2; ++axis) {
     std::transform(places.begin(), places.end(), numbers.begin(),
                    [&](const auto& place) { return place[axis]; });
-    const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-    std::nth_element(numbers.begin(), middle, numbers.end());
-    result[axis] = *middle;
+    result[axis] = upper_median(numbers);
   }
   return result;
 }

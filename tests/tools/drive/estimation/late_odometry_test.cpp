@@ -18,32 +18,28 @@ using namespace waymark_test;
 
 namespace {
 
-struct Drive {
-  PreparedDrive prepared;
-};
-
 /// Five minutes of bends at 10 Hz and 8 to 16 m/s, with fixes of 2 cm at 1 Hz.
-Drive bends(double odometry_late_s) {
+PreparedDrive bends(double odometry_late_s) {
   constexpr double kStep_s = 0.1;
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal(0, 1);
-  Drive drive;
-  drive.prepared.receivers = {{"gnss"}};
+  PreparedDrive drive;
+  drive.receivers = {{"gnss"}};
   Pose2<double> pose(0, 0, 0.7);
   const auto speed_at = [](double t) { return 12 + 4 * std::sin(t / 7); };
   const auto turn_at = [](double t) { return 0.15 * std::sin(t / 11) + 0.1 * std::sin(t / 4); };
   for (int i = 0; i <= 3000; ++i) {
     const double t = i * kStep_s;
-    drive.prepared.odometry.push_back({.stamp = Stamp::from_seconds(1000 + t + odometry_late_s),
-                                       .speed_mps = speed_at(t) + 0.03 * normal(random),
-                                       .yaw_rate_radps = turn_at(t) + 0.002 * normal(random)});
+    drive.odometry.push_back({.stamp = Stamp::from_seconds(1000 + t + odometry_late_s),
+                              .speed_mps = speed_at(t) + 0.03 * normal(random),
+                              .yaw_rate_radps = turn_at(t) + 0.002 * normal(random)});
     if (i % 10 == 0 && i >= 10 && i <= 2990) {
       Fix fix;
       fix.stamp = Stamp::from_seconds(1000 + t);
       fix.epoch = i / 10 - 1;
       fix.position = pose.position + 0.02 * Eigen::Vector2d(normal(random), normal(random));
       fix.covariance = 4e-4 * Eigen::Matrix2d::Identity();
-      drive.prepared.fixes.push_back(fix);
+      drive.fixes.push_back(fix);
     }
     const double middle = t + 0.5 * kStep_s;
     pose = compose(
@@ -53,8 +49,8 @@ Drive bends(double odometry_late_s) {
 }
 
 /// Returns what is said about a late odometry; empty: nothing.
-std::string told(const Drive& drive) {
-  for (const std::string& warning : fuse(drive.prepared, {}, registry()).model.warnings())
+std::string told(const PreparedDrive& drive) {
+  for (const std::string& warning : fuse(drive, {}, registry()).model.warnings())
     if (warning.find("the odometry is probably late") != std::string::npos) return warning;
   return {};
 }
@@ -70,8 +66,8 @@ TEST_CASE(
     "late odometry: nothing is said where clocks agree, where fixes may be late, or a delay is stated") {
   CHECK(told(bends(0)).empty());
   CHECK(told(bends(-0.1)).empty());
-  Drive stated = bends(0.1);
-  stated.prepared.receivers.front().delay_is_stated = true;
+  PreparedDrive stated = bends(0.1);
+  stated.receivers.front().delay_is_stated = true;
   CHECK(told(stated).empty());
 }
 
