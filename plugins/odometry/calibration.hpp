@@ -1,4 +1,4 @@
-/// Calibration of the odometry: gyro bias, speed scale and yaw rate per speed as states of the graph.
+/// Calibration of the odometry: gyro bias, speed scale, yaw rate per speed and yaw scale as states of the graph.
 /// They are constant over a drive or wander slowly.
 #pragma once
 
@@ -30,6 +30,14 @@ struct VertexYawPerSpeed : ScalarState {
   static constexpr std::string_view kTag = "VERTEX_YAW_PER_SPEED";
   static constexpr std::array<std::string_view, 1> value_names() { return {"yaw_per_speed"}; }
   static constexpr std::array<std::string_view, 1> value_units() { return {"rad/m"}; }
+};
+
+/// The relative error of the yaw rate, by the sensitivity of a gyro, a track width or a steering ratio:
+/// true yaw rate = (1 + scale) (reading - bias - yaw_per_speed * speed).
+struct VertexYawScale : ScalarState {
+  static constexpr std::string_view kTag = "VERTEX_YAW_SCALE";
+  static constexpr std::array<std::string_view, 1> value_names() { return {"yaw_scale"}; }
+  static constexpr std::array<std::string_view, 1> value_units() { return {"1"}; }
 };
 
 /// EDGE_SE2_ODOMETRY with calibrated readings: Z = exp([(1 + s) speed dt, 0, (yaw_rate - b) dt]),
@@ -95,6 +103,44 @@ struct EdgeSe2OdometryYawCalibrated : EdgeSe2OdometryCalibrated {
   }
 };
 
+/// The same with a yaw rate whose scale is not known either: the yaw rate is (1 + k) (w - b - k' speed).
+struct EdgeSe2OdometryYawScaled : EdgeSe2OdometryCalibrated {
+  using Base = EdgeSe2OdometryCalibrated;
+  static constexpr std::string_view kTag = "EDGE_SE2_ODOMETRY_YAW_SCALED";
+  using Vertices =
+      VertexList<VertexSe2, VertexSe2, VertexSpeedScale, VertexGyroBias, VertexYawPerSpeed, VertexYawScale>;
+  static constexpr auto fields() {
+    return std::array{field<&Base::speed, EdgeSe2OdometryYawScaled>("speed"),
+                      field<&Base::yaw_rate, EdgeSe2OdometryYawScaled>("yaw_rate"),
+                      field<&Base::dt, EdgeSe2OdometryYawScaled>("dt")};
+  }
+
+  template <typename T>
+  Vector3<T> error(const Pose2<T>& from, const Pose2<T>& to, const T& scale, const T& bias,
+                   const T& per_speed, const T& yaw_scale) const {
+    return Base::error(from, to, scale, equivalent_bias(T(bias + per_speed * T(speed)), yaw_scale));
+  }
+
+  void linearize(const Pose2<double>& from, const Pose2<double>& to, double scale, double bias,
+                 double per_speed, double yaw_scale, ErrorVector<3>& e, JacobianMatrix<3, 3>& by_from,
+                 JacobianMatrix<3, 3>& by_to, JacobianMatrix<3, 1>& by_scale, JacobianMatrix<3, 1>& by_bias,
+                 JacobianMatrix<3, 1>& by_per_speed, JacobianMatrix<3, 1>& by_yaw_scale) const {
+    const double unscaled = bias + per_speed * speed;
+    Base::linearize(from, to, scale, equivalent_bias(unscaled, yaw_scale), e, by_from, by_to, by_scale,
+                    by_bias);
+    by_yaw_scale = by_bias * (unscaled - yaw_rate);
+    by_bias *= 1 + yaw_scale;
+    by_per_speed = by_bias * speed;
+  }
+
+ private:
+  /// The bias b with w - b = (1 + k) (w - bias).
+  template <typename T>
+  T equivalent_bias(const T& bias, const T& yaw_scale) const {
+    return T(bias + yaw_scale * (bias - T(yaw_rate)));
+  }
+};
+
 /// The gyro reads its bias while the vehicle stands: e = yaw_rate - b. rad/s.
 struct EdgeGyroAtRest {
   static constexpr std::string_view kTag = "EDGE_GYRO_AT_REST";
@@ -133,6 +179,15 @@ struct EdgeYawPerSpeedWalk : EdgeGyroBiasWalk {
   using Vertices = VertexList<VertexYawPerSpeed, VertexYawPerSpeed>;
   static constexpr auto fields() {
     return std::array{field<&EdgeGyroBiasWalk::change, EdgeYawPerSpeedWalk>("change")};
+  }
+};
+
+/// The same step for the yaw scale.
+struct EdgeYawScaleWalk : EdgeGyroBiasWalk {
+  static constexpr std::string_view kTag = "EDGE_YAW_SCALE_WALK";
+  using Vertices = VertexList<VertexYawScale, VertexYawScale>;
+  static constexpr auto fields() {
+    return std::array{field<&EdgeGyroBiasWalk::change, EdgeYawScaleWalk>("change")};
   }
 };
 

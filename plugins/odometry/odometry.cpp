@@ -15,8 +15,8 @@ namespace waymark::plugins::odometry {
 namespace {
 
 /// Adds one edge per interval: EDGE_SE2_ODOMETRY while driving, EDGE_SE2_STANDSTILL while standing.
-/// If a state is calibrated, the driving edge is EDGE_SE2_ODOMETRY_CALIBRATED, and an
-/// EDGE_GYRO_AT_REST is added beside the standstill.
+/// If a state is calibrated, the driving edge is the first of EDGE_SE2_ODOMETRY_CALIBRATED, _YAW_CALIBRATED and
+/// _YAW_SCALED that has it, and an EDGE_GYRO_AT_REST is added beside the standstill.
 class ConstantTwist final : public OdometryModel {
  public:
   struct Configuration {
@@ -29,37 +29,28 @@ class ConstantTwist final : public OdometryModel {
     StateOptions gyro_bias;
     StateOptions speed_scale;
     StateOptions yaw_per_speed;
+    StateOptions yaw_scale;
   };
 
   explicit ConstantTwist(const Configuration& configuration)
       : given_(configuration),
         bias_(configuration.gyro_bias),
         scale_(configuration.speed_scale),
-        yaw_(configuration.yaw_per_speed) {}
+        per_speed_(configuration.yaw_per_speed),
+        yaw_scale_(configuration.yaw_scale) {}
 
   void extend(const OdometryInput& input, Graph& graph) override {
     const DriveNodes& nodes = input.nodes;
     if (nodes.poses.size() != nodes.intervals.size() + 1)
       throw UsageError("odometry: one pose more than intervals is needed");
-    const bool calibrates = bias_.is_calibrated() || scale_.is_calibrated();
     for (std::size_t i = 0; i < nodes.intervals.size(); ++i) {
       const Interval& interval = nodes.intervals[i];
       const std::array<VertexIndex, 2> poses = {nodes.poses[i], nodes.poses[i + 1]};
       if (interval.stands(given_.standstill_speed) && !interval.bridged) {
         graph.add_edge(reading<EdgeSe2Standstill>(interval), poses, standstill_information(interval));
         if (bias_.is_calibrated()) add_gyro_at_rest(interval, bias_.at(nodes.stamps[i], graph), graph);
-      } else if (yaw_.is_calibrated()) {
-        graph.add_edge(reading<EdgeSe2OdometryYawCalibrated>(interval),
-                       {poses[0], poses[1], scale_.at(nodes.stamps[i], graph),
-                        bias_.at(nodes.stamps[i], graph), yaw_.at(nodes.stamps[i], graph)},
-                       motion_information(interval));
-      } else if (calibrates) {
-        graph.add_edge(
-            reading<EdgeSe2OdometryCalibrated>(interval),
-            {poses[0], poses[1], scale_.at(nodes.stamps[i], graph), bias_.at(nodes.stamps[i], graph)},
-            motion_information(interval));
       } else {
-        graph.add_edge(reading<EdgeSe2Odometry>(interval), poses, motion_information(interval));
+        add_motion(interval, nodes.stamps[i], poses, graph);
       }
     }
   }
@@ -74,6 +65,25 @@ class ConstantTwist final : public OdometryModel {
     edge.yaw_rate = interval.yaw_rate_radps;
     edge.dt = interval.dt_s;
     return edge;
+  }
+
+  void add_motion(const Interval& interval, Stamp stamp, const std::array<VertexIndex, 2>& poses,
+                  Graph& graph) {
+    const auto [from, to] = poses;
+    const Eigen::Matrix3d information = motion_information(interval);
+    const auto scale = [&] { return scale_.at(stamp, graph); };
+    const auto bias = [&] { return bias_.at(stamp, graph); };
+    const auto per_speed = [&] { return per_speed_.at(stamp, graph); };
+    if (yaw_scale_.is_calibrated())
+      graph.add_edge(reading<EdgeSe2OdometryYawScaled>(interval),
+                     {from, to, scale(), bias(), per_speed(), yaw_scale_.at(stamp, graph)}, information);
+    else if (per_speed_.is_calibrated())
+      graph.add_edge(reading<EdgeSe2OdometryYawCalibrated>(interval),
+                     {from, to, scale(), bias(), per_speed()}, information);
+    else if (bias_.is_calibrated() || scale_.is_calibrated())
+      graph.add_edge(reading<EdgeSe2OdometryCalibrated>(interval), {from, to, scale(), bias()}, information);
+    else
+      graph.add_edge(reading<EdgeSe2Odometry>(interval), poses, information);
   }
 
   [[nodiscard]] Eigen::Matrix3d motion_information(const Interval& interval) const {
@@ -97,7 +107,8 @@ class ConstantTwist final : public OdometryModel {
   Configuration given_;
   StateAlongDrive<VertexGyroBias, EdgeGyroBiasWalk> bias_;
   StateAlongDrive<VertexSpeedScale, EdgeSpeedScaleWalk> scale_;
-  StateAlongDrive<VertexYawPerSpeed, EdgeYawPerSpeedWalk> yaw_;
+  StateAlongDrive<VertexYawPerSpeed, EdgeYawPerSpeedWalk> per_speed_;
+  StateAlongDrive<VertexYawScale, EdgeYawScaleWalk> yaw_scale_;
 };
 
 constexpr const char* kGapFactor = "gap_noise_factor";
@@ -143,6 +154,10 @@ std::vector<OptionInfo> options() {
        state_options("yaw_per_speed", "rad/m", "off", "1e-3", "1e-5",
                      "error of a yaw rate from wheels or steering, true yaw rate = reading - this * speed"))
     all.push_back(option);
+  for (const OptionInfo& option :
+       state_options("yaw_scale", "1", "off", "0.01", "1e-4",
+                     "scale error of the yaw rate, true yaw rate = (1 + scale) reading"))
+    all.push_back(option);
   all.push_back(
       {kTrackSigma, "0.2", "m", OptionRange{1e-3, 100},
        "how far the track of a further relative source is beside that of the first one, to and fro, "
@@ -172,6 +187,7 @@ std::unique_ptr<OdometryModel> make(const CheckedOptions& options) {
   configuration.gyro_bias = read_state(options, "gyro_bias");
   configuration.speed_scale = read_state(options, "speed_scale");
   configuration.yaw_per_speed = read_state(options, "yaw_per_speed");
+  configuration.yaw_scale = read_state(options, "yaw_scale");
   return std::make_unique<ConstantTwist>(configuration);
 }
 
@@ -179,14 +195,17 @@ void register_types(TypeRegistry& registry) {
   registry.add_vertex<VertexGyroBias>();
   registry.add_vertex<VertexSpeedScale>();
   registry.add_vertex<VertexYawPerSpeed>();
+  registry.add_vertex<VertexYawScale>();
   registry.add_edge<EdgeSe2Odometry>();
   registry.add_edge<EdgeSe2Standstill>();
   registry.add_edge<EdgeSe2OdometryCalibrated>();
   registry.add_edge<EdgeSe2OdometryYawCalibrated>();
+  registry.add_edge<EdgeSe2OdometryYawScaled>();
   registry.add_edge<EdgeGyroAtRest>();
   registry.add_edge<EdgeGyroBiasWalk>();
   registry.add_edge<EdgeSpeedScaleWalk>();
   registry.add_edge<EdgeYawPerSpeedWalk>();
+  registry.add_edge<EdgeYawScaleWalk>();
   registry.add_odometry_model({"constant_twist", "exact constant-twist integration of speed and yaw rate",
                                options(), make, kGapFactor, kTrackSigma, kTrackHeading});
 }

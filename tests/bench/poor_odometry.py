@@ -67,6 +67,7 @@ FAULTS = {
     "none": lambda t, speed, turn, drawn: (speed, turn),
     "dead": lambda t, speed, turn, drawn: (speed, 0),
     "weak": lambda t, speed, turn, drawn: (speed, 0.3 * turn),
+    "strong": lambda t, speed, turn, drawn: (speed, 1.15 * turn),
     "dropouts": lambda t, speed, turn, drawn: (speed, 0 if t % 200 > 120 else turn),
     "slip": lambda t, speed, turn, drawn: (1.35 * speed if t % 240 > 120 else speed, turn),
     "bias": lambda t, speed, turn, drawn: (speed, turn + 0.2),

@@ -11,6 +11,7 @@ std::string edge_name(const std::string& tag) {
       {"EDGE_SE2_ODOMETRY", "odometry"},
       {"EDGE_SE2_ODOMETRY_CALIBRATED", "odometry, calibrated"},
       {"EDGE_SE2_ODOMETRY_YAW_CALIBRATED", "odometry, yaw calibrated"},
+      {"EDGE_SE2_ODOMETRY_YAW_SCALED", "odometry, yaw scaled"},
       {"EDGE_SE2_TWIST", "odometry, twist"},
       {"EDGE_SE2_STANDSTILL", "standstill"},
       {"EDGE_GNSS_POSITION", "GNSS position"},

@@ -47,7 +47,10 @@ ReckonedFixes of_receiver(std::span<const Fix> fixes, std::span<const Eigen::Vec
 ChordPair chord_between(const ReckonedFixes& receiver, std::size_t first, std::size_t last) {
   return {.gnss = receiver.fixes[last].position - receiver.fixes[first].position,
           .odometry = receiver.antenna[last].head<2>() - receiver.antenna[first].head<2>(),
-          .duration_s = seconds_between(receiver.fixes[first].stamp, receiver.fixes[last].stamp)};
+          .duration_s = seconds_between(receiver.fixes[first].stamp, receiver.fixes[last].stamp),
+          .middle_s = 0.5 * (seconds_between(receiver.fixes.front().stamp, receiver.fixes[first].stamp) +
+                             seconds_between(receiver.fixes.front().stamp, receiver.fixes[last].stamp)),
+          .turn_rad = receiver.antenna[last][2] - receiver.antenna[first][2]};
 }
 
 std::vector<ChordPair> chords_of(const ReckonedFixes& receiver, double longest_s,
@@ -86,15 +89,17 @@ double bias_of(std::span<const ChordPair> chords) {
   return biases.size() < kFewest ? 0 : median_with_sigma(std::move(biases)).value;
 }
 
-ReckonedFixes without_bias(ReckonedFixes receiver, double bias_radps) {
+ReckonedFixes without_error(ReckonedFixes receiver, const YawError& error) {
   const std::vector<Eigen::Vector3d> bent = receiver.antenna;
+  const auto turned_at = [&](std::size_t i) {
+    const double since_s = seconds_between(receiver.fixes.front().stamp, receiver.fixes[i].stamp);
+    return bent[i][2] * (1 / error.factor - 1) - error.bias_radps * since_s;
+  };
   for (std::size_t i = 1; i < bent.size(); ++i) {
-    const double before_s = seconds_between(receiver.fixes.front().stamp, receiver.fixes[i - 1].stamp);
-    const double after_s = seconds_between(receiver.fixes.front().stamp, receiver.fixes[i].stamp);
     const Eigen::Vector2d step = bent[i].head<2>() - bent[i - 1].head<2>();
     receiver.antenna[i].head<2>() =
-        receiver.antenna[i - 1].head<2>() + rotate(-bias_radps * 0.5 * (before_s + after_s), step);
-    receiver.antenna[i][2] = bent[i][2] - bias_radps * after_s;
+        receiver.antenna[i - 1].head<2>() + rotate(0.5 * (turned_at(i - 1) + turned_at(i)), step);
+    receiver.antenna[i][2] = bent[i][2] + turned_at(i);
   }
   return receiver;
 }

@@ -29,11 +29,13 @@ struct ChordPair {
   Eigen::Vector2d gnss = Eigen::Vector2d::Zero();
   Eigen::Vector2d odometry = Eigen::Vector2d::Zero();
   double duration_s = 0;
+  double middle_s = 0;     ///< since the first fix of the receiver
   double heading_rad = 0;  ///< mean of the odometry along the chord, not wrapped
+  double turn_rad = 0;     ///< of the odometry from its beginning to its end, not wrapped
   bool follows = false;    ///< it begins at the end of the previous chord
 };
 
-/// Returns the way from a fix to a later one. Its heading is 0.
+/// Returns the way from a fix to a later one. Its heading is 0; chords_of() knows it.
 [[nodiscard]] ChordPair chord_between(const ReckonedFixes& receiver, std::size_t first, std::size_t last);
 
 /// Returns chords one after another. Each is extended until it is complete.
@@ -49,9 +51,14 @@ struct ChordPair {
 /// Returns the bias of the odometry's yaw rate that the chords show in the median, rad/s; 0 for few.
 [[nodiscard]] double bias_of(std::span<const ChordPair> chords);
 
-/// Returns the fixes beside the odometry less a bias of its yaw rate, rad/s: what lies between two fixes is turned as a
-/// whole.
-[[nodiscard]] ReckonedFixes without_bias(ReckonedFixes receiver, double bias_radps);
+/// How a yaw rate errs: the true one is reading / factor - bias.
+struct YawError {
+  double factor = 1;
+  double bias_radps = 0;
+};
+
+/// Returns the fixes beside the odometry without such an error: what lies between two fixes is turned as a whole.
+[[nodiscard]] ReckonedFixes without_error(ReckonedFixes receiver, const YawError& error);
 
 /// A turn from one chord to the next.
 struct TurnPair {
@@ -66,6 +73,12 @@ struct TurnPair {
 /// or from 0.01 to 100. Empty unless the turns differ from those of the fixes at most half as much
 /// with it as with a factor of 1 and without turns.
 [[nodiscard]] std::optional<double> factor_of_turns(std::span<const TurnPair> turns);
+
+/// Whether speeds or turns may be wrong by a factor for want of calibration; beyond 4 they are read wrong.
+[[nodiscard]] inline bool is_scale(double factor) {
+  constexpr double kLargest = 4;
+  return factor < kLargest && factor > 1 / kLargest;
+}
 
 /// A median with its standard deviation, if the values are independent.
 struct Median {

@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 
 #include <waymark/tools/drive/comparison/chords.hpp>
+#include <waymark/tools/drive/comparison/turn_factor.hpp>
 #include <waymark/tools/drive/coordinates/coordinate_slips.hpp>
 
 namespace waymark::drive {
@@ -82,31 +83,33 @@ class ReckonedDrive {
  public:
   ReckonedDrive(const Timeline& timeline, std::span<const Fix> fixes, double standstill_mps)
       : timeline_(timeline), fixes_(fixes), standstill_mps_(standstill_mps) {
-    for (const double factor : kYawFactors) legs_[factor] = reckoned(factor, 0);
-    without_bias_ = reckoned(1, bias_of(legs_.at(1).front()));
+    for (const double factor : kYawFactors) legs_[factor] = legs_of(reckoned({.factor = factor}));
+    calibrated_ = legs_of(reckoned(error_of_yaw_rates()));
   }
 
   /// @param length place in kLegs_m
   [[nodiscard]] const std::vector<ChordPair>& legs(double yaw_factor, std::size_t length) const {
     return legs_.at(yaw_factor)[length];
   }
-  /// Returns those of the drive as it was read, less the bias of the gyro.
-  [[nodiscard]] const std::vector<ChordPair>& legs_without_bias(std::size_t length) const {
-    return without_bias_[length];
+  /// Returns those of the drive as it was read, without the scale and the bias of the yaw rate.
+  [[nodiscard]] const std::vector<ChordPair>& calibrated_legs(std::size_t length) const {
+    return calibrated_[length];
   }
 
  private:
-  [[nodiscard]] Legs reckoned(double yaw_factor, double bias_radps) const {
-    constexpr double kLongest_s = 30;
+  [[nodiscard]] ReckonedFixes reckoned(const YawError& error) const {
     Timeline other = timeline_;
     for (Interval& interval : other.intervals) {
       if (interval.bridged) continue;  // by the motion of the fixes, which is in the right unit
-      interval.yaw_rate_radps = interval.yaw_rate_radps / yaw_factor - bias_radps;
-      interval.yaw_rate_change_radps /= yaw_factor;
+      interval.yaw_rate_radps = interval.yaw_rate_radps / error.factor - error.bias_radps;
+      interval.yaw_rate_change_radps /= error.factor;
     }
     const std::vector<Eigen::Vector3d> poses = dead_reckon(other, Eigen::Vector3d::Zero(), standstill_mps_);
-    const ReckonedFixes receiver =
-        of_receiver(fixes_, antenna_at_fixes(other, poses, fixes_), fixes_.front().source);
+    return of_receiver(fixes_, antenna_at_fixes(other, poses, fixes_), fixes_.front().source);
+  }
+
+  static Legs legs_of(const ReckonedFixes& receiver) {
+    constexpr double kLongest_s = 30;
     Legs legs;
     for (std::size_t i = 0; i < legs.size(); ++i)
       legs[i] = chords_of(receiver, kLongest_s,
@@ -114,11 +117,19 @@ class ReckonedDrive {
     return legs;
   }
 
+  [[nodiscard]] YawError error_of_yaw_rates() const {
+    const ReckonedFixes as_read = reckoned({});
+    const std::optional<TurnFactor> factor = turn_factor(as_read);
+    if (!factor) return {.bias_radps = bias_of(legs_.at(1).front())};
+    const YawError scale{.factor = factor->value};
+    return {scale.factor, bias_of(legs_of(without_error(as_read, scale)).front())};
+  }
+
   const Timeline& timeline_;
   std::span<const Fix> fixes_;
   double standstill_mps_;
   std::map<double, Legs> legs_;  ///< by kYawFactors
-  Legs without_bias_;
+  Legs calibrated_;
 };
 
 /// By how much the turn from one leg to the next differs, in rad; infinite if their lengths do.
@@ -242,12 +253,12 @@ std::vector<double> differences_at_scale(std::span<const ChordPair> legs) {
   return differences_of(legs, is_calibration(found) ? found : 1);
 }
 
-/// Returns the drive as it was read. A scale and a bias of the gyro are no unit's fault.
+/// Returns the drive as it was read. Scales and a bias of the gyro are no unit's fault.
 Candidate as_read(const ReckonedDrive& drive, std::size_t length) {
   constexpr double kWide_rad = 0.3;
   Candidate best{{}, differences_of(drive.legs(1, length), 1)};
   for (std::vector<double> differences :
-       {differences_at_scale(drive.legs(1, length)), differences_at_scale(drive.legs_without_bias(length))})
+       {differences_at_scale(drive.legs(1, length)), differences_at_scale(drive.calibrated_legs(length))})
     if (count_within(kWide_rad, differences) > count_within(kWide_rad, best.differences))
       best.differences = std::move(differences);
   return best;

@@ -12,12 +12,6 @@
 
 namespace waymark::drive {
 
-/// Whether the speed may be wrong by a factor for want of calibration; beyond 4 it is read wrong.
-[[nodiscard]] inline bool is_scale(double factor) {
-  constexpr double kLargest = 4;
-  return factor < kLargest && factor > 1 / kLargest;
-}
-
 /// Finds the reading with which the odometry fits the fixes, if it does not as it was read: speeds in km/h,
 /// mph, kn or mm/s or with a factor beyond 4, yaw rates in deg/s or of the other sense, both, or one of
 /// coordinate_slips(). Each is dead-reckoned anew and compared along legs, that is chords of 20, 60 or 180 m of
@@ -26,7 +20,8 @@ namespace waymark::drive {
 ///
 /// Empty unless the other reading makes at least ten pairs agree that did not, at most a tenth as many disagree
 /// that did, and most agree: poor odometry, poor fixes and clocks apart are not mended by a unit.
-/// Any other scale of the speed, and a bias of the gyro, are taken as calibration: the drive as it was read has them.
+/// Any other scale of the speed, and the scale and the bias of the gyro, are taken as calibration: the drive as it was
+/// read has them.
 /// Other yaw rates must also be better than none at all, because noise of a gyro is.
 /// @returns what does not fit, with which reading it does, and how to state that
 /// @param fixes in the order of timeline.fix_node; those of the first receiver are compared

@@ -9,6 +9,7 @@
 #include <waymark/tools/drive/comparison/frozen_fixes.hpp>
 #include <waymark/tools/drive/comparison/jumps.hpp>
 #include <waymark/tools/drive/comparison/plausibility.hpp>
+#include <waymark/tools/drive/comparison/turn_factor.hpp>
 #include <waymark/tools/drive/coordinates/coordinate_slips.hpp>
 
 namespace waymark::drive {
@@ -48,24 +49,42 @@ std::vector<TurnPair> large_turns(const std::vector<TurnPair>& all, double facto
   return turns;
 }
 
+/// How many times the odometry turns as the fixes do, if that is far from 1; negative if the sense is another one.
+struct TurnSize {
+  double factor = 1;
+  std::size_t turns = 0;
+};
+
 /// Compares the size of the turns of the fixes. Where the vehicle hardly turns, those of the fixes alone are noise
 /// that happens to be large: so the factor must explain those that it expects of the odometry as well.
-std::string size_of_turns(const std::vector<TurnPair>& all) {
-  constexpr double kNear = 1.15;
+std::optional<TurnSize> size_of_turns(const std::vector<TurnPair>& all) {
   std::vector<TurnPair> turns = large_turns(all, 0);
-  if (turns.size() < kFewestTurns) return {};
+  if (turns.size() < kFewestTurns) return std::nullopt;
   std::optional<double> found = factor_of_turns(turns);
-  if (!found || !is_unusual(std::abs(*found))) return {};
+  if (!found || !is_unusual(std::abs(*found))) return std::nullopt;
   turns = large_turns(all, *found);
   found = factor_of_turns(turns);
-  if (!found || !is_unusual(std::abs(*found))) return {};
-  const double factor = 1 / std::abs(*found);  // of the odometry
+  if (!found || !is_unusual(std::abs(*found))) return std::nullopt;
+  return TurnSize{1 / *found, turns.size()};
+}
+
+std::string in_words(const TurnSize& size) {
+  constexpr double kNear = 1.15;
+  const double factor = std::abs(size.factor);
   const auto is_near = [&](double unit) { return factor < kNear * unit && factor > unit / kNear; };
   const char* remedy = "check the unit and the scale of the yaw rate";
   if (is_near(180 / std::numbers::pi)) remedy = "deg/s are read as rad/s: state 'unit: deg/s' of the column";
   if (is_near(std::numbers::pi / 180)) remedy = "rad/s are read as deg/s: state 'unit: rad/s' of the column";
   return fmt::format("the odometry's turns are {:.3g} times the turns of the fixes ({} turns); {}{}", factor,
-                     turns.size(), remedy, *found < 0 ? ", and 'convention: cw'" : "");
+                     size.turns, remedy, size.factor < 0 ? ", and 'convention: cw'" : "");
+}
+
+std::string in_words(const TurnFactor& factor) {
+  return fmt::format(
+      "the odometry's turns are {:.3f} times those of the fixes ({} turns, sigma {:.3f}): the scale of its yaw rate "
+      "is wrong (the sensitivity of a gyro, 'track_width', 'steering_ratio'); correct it, or state how well it is "
+      "known (odometry: 'options: {{yaw_scale: constant, yaw_scale_sigma: {:.2g}}}')",
+      factor.value, factor.turns, factor.sigma, std::abs(1 / factor.value - 1));
 }
 
 std::string sign_of_turns(const std::vector<TurnPair>& turns) {
@@ -177,10 +196,20 @@ std::string rough_factor(const std::vector<double>& factors, std::optional<doubl
 
 Shape shape_of(const ReckonedFixes& receiver) {
   const std::vector<TurnPair> turns = turns_between(receiver);
+  const std::optional<TurnSize> size = size_of_turns(turns);
+  const bool is_of_unit = size && !is_scale(size->factor);
+  const std::optional<TurnFactor> factor_of_turns =
+      is_of_unit ? std::nullopt : turn_factor(receiver, size ? size->factor : 1);
   // Turns of another size distort all lengths, and lengths of another unit all differences of them.
-  if (std::string size = size_of_turns(turns); !size.empty()) return {{std::move(size)}, true, true};
+  if (size && !factor_of_turns) return {{in_words(*size)}, true, true};
   Shape shape;
-  const ReckonedFixes straight = without_bias(receiver, bias_of(legs_of(receiver)));
+  YawError error;
+  if (factor_of_turns) {
+    shape.turn_factor = error.factor = factor_of_turns->value;
+    shape.sentences.push_back(in_words(*factor_of_turns));
+  }
+  error.bias_radps = bias_of(legs_of(without_error(receiver, error)));
+  const ReckonedFixes straight = without_error(receiver, error);
   const std::vector<double> ways = way_factors(straight);
   const std::vector<double> chords = chord_factors(straight);
   if (std::string sign = sign_of_turns(turns); !sign.empty()) {
@@ -312,16 +341,19 @@ ComparedWithFixes compare_odometry_with_fixes(std::span<const Fix> fixes,
   const ReckonedFixes receiver = of_receiver(live, reckoned, first);
   Shape shape = shape_of(receiver);
   compared.speed_factor = shape.speed_factor;
+  compared.turn_factor = shape.turn_factor;
   const std::vector<std::string> known = odometry.empty() ? std::vector<std::string>() : shape.sentences;
   if (place && !shape.sentences.empty()) name_slips(receiver, *place, shape);
   for (const std::string& sentence : shape.sentences)
     if (std::find(known.begin(), known.end(), sentence) == known.end())
       warnings.push_back((odometry.empty() ? "" : odometry + ": ") + sentence);
   if (shape.spoils_jumps) return compared;
-  for (std::string& jump : jumps_in_words(receiver)) warnings.push_back(std::move(jump));
+  const YawError scale{.factor = shape.turn_factor.value_or(1)};
+  for (std::string& jump : jumps_in_words(without_error(receiver, scale)))
+    warnings.push_back(std::move(jump));
   for (int source = 0; source < std::ssize(receivers); ++source) {
     if (source == first) continue;
-    for (const std::string& jump : jumps_in_words(of_receiver(live, reckoned, source)))
+    for (const std::string& jump : jumps_in_words(without_error(of_receiver(live, reckoned, source), scale)))
       warnings.push_back(receivers[static_cast<std::size_t>(source)] + ": " + jump);
   }
   return compared;

@@ -17,10 +17,12 @@ namespace waymark::drive {
 struct ComparedWithFixes {
   std::vector<std::string> warnings;
   std::optional<double> speed_factor{};  ///< as Shape::speed_factor
+  std::optional<double> turn_factor{};   ///< as Shape::turn_factor
 };
 
 /// Returns one sentence for each suspicious fact:
 /// - The turns have another size or sign than those of the fixes (at least 8 turns of 15 degrees).
+/// - The turns differ by a factor that is significant, and beyond 4 % or more (turn_factor.hpp).
 /// - The distances differ by a factor beyond 1.5 (median over at least 10 chords of about 20 m).
 /// - The distances differ by a factor that is significant, and beyond 3 % (median over at least 10
 ///   chords of 100 m, compared with its own uncertainty).
@@ -47,6 +49,7 @@ struct Shape {
   bool spoils_jumps = false;  ///< jumps mean nothing then
   /// of the odometry's distances, if it is significant and beyond the prior of speed_scale
   std::optional<double> speed_factor{};
+  std::optional<double> turn_factor{};  ///< of the odometry's turns, if it is significant (turn_factor.hpp)
 };
 /// Compares turns and distances alone. @param fixes of one receiver @param antenna as above
 [[nodiscard]] Shape compare_shapes(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna);

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/detail/median.hpp>
-#include <waymark/tools/drive/comparison/misreading.hpp>
+#include <waymark/tools/drive/comparison/chords.hpp>
 #include <waymark/tools/drive/estimation/latency.hpp>
 #include <waymark/tools/drive/estimation/noise_spread.hpp>
 #include <waymark/tools/drive/model/build.hpp>
@@ -175,23 +175,37 @@ void refuse_misreading(const PlacedDrive& placed) {
   throw InputError(of_several(placed) + placed.misreading);
 }
 
-/// Widens the prior of the scale of the odometry that gives the nodes, which is that of a sound one, to what the fixes
+/// Widens the prior of a scale of the odometry that gives the nodes, which is that of a sound one, to what the fixes
 /// show, unless it is stated.
-void adapt_to_scale(FusionSettings& decision, const TypeRegistry& registry, ModeledDrive& modeled) {
-  constexpr const char* kPrior = "speed_scale_sigma";
-  const PlacedDrive& placed = modeled.placed;
-  const double factor = placed.speed_factor.value_or(1);
+/// @param factor of the distances or turns of the odometry
+/// @param name of the state
+void widen_prior(double factor, const std::string& name, const char* what, const TypeRegistry& registry,
+                 FusionSettings& decision, ModeledDrive& modeled) {
   if (factor == 1 || !is_scale(factor)) return;
+  const std::string prior = name + "_sigma";
+  const PlacedDrive& placed = modeled.placed;
   const FusionSettings own = for_relative(decision, placed.odometry_name);
   const OdometryModelType& type = registry.odometry_model(own.odometry_model);
-  if (!has_option(type.options, kPrior)) return;
-  if (with_calibration(own.odometry_options, own, type.options).contains(kPrior)) return;
+  if (!has_option(type.options, prior)) return;
+  if (with_calibration(own.odometry_options, own, type.options).contains(prior)) return;
   const auto source = decision.sources.find(placed.odometry_name);
   Options& options = source == decision.sources.end() ? decision.odometry_options : source->second.options;
-  options[kPrior] = shortest(std::abs(1 / factor - 1));
-  modeled.notes.push_back(
-      fmt::format("{}speed_scale_sigma is taken as {:.2g}, because the distances differ by that",
-                  of_several(placed), std::abs(1 / factor - 1)));
+  options[prior] = shortest(std::abs(1 / factor - 1));
+  modeled.notes.push_back(fmt::format("{}{} is taken as {:.2g}, because the {} differ by that",
+                                      of_several(placed), prior, std::abs(1 / factor - 1), what));
+}
+
+/// Adapts the calibration of the odometry that gives the nodes to scales that the fixes show.
+/// @param by_default nobody stated what is calibrated: the scale of turns is, too, if it must be
+void adapt_to_scales(bool by_default, FusionSettings& decision, const TypeRegistry& registry,
+                     ModeledDrive& modeled) {
+  constexpr const char* kYawScale = "yaw_scale";
+  const PlacedDrive& placed = modeled.placed;
+  widen_prior(placed.speed_factor.value_or(1), "speed_scale", "distances", registry, decision, modeled);
+  const std::string model = for_relative(decision, placed.odometry_name).odometry_model;
+  if (!placed.turn_factor || !has_option(registry.odometry_model(model).options, kYawScale)) return;
+  if (by_default && !decision.calibration->empty()) decision.calibration->try_emplace(kYawScale, "constant");
+  widen_prior(*placed.turn_factor, kYawScale, "turns", registry, decision, modeled);
 }
 
 /// Adapts the settings to the yaw rate of each relative source.
@@ -228,6 +242,16 @@ std::string words_for_late_odometry(double late_s) {
       "are never early, so the odometry is probably late: add {:.3f} to the 'time: {{offset}}' of its logs, or the "
       "results are late by that as well; if the stamps of the receiver are wrong, state its 'delay'",
       late_s, -late_s);
+}
+
+std::string words_for_drift(const ClockDrift& drift, const PreparedDrive& drive) {
+  constexpr double kMillion = 1e6;
+  const double ppm = kMillion * drift.rate;
+  return fmt::format(
+      "the clock of the odometry {} by {:.1f} +- {:.1f} ppm beside that of the fixes, {:.3f} s from the first one to "
+      "the last; its readings are taken at the times of that clock, as if both agreed at the first fix",
+      ppm > 0 ? "falls behind" : "hurries", std::abs(ppm), kMillion * drift.sigma,
+      std::abs(drift.rate) * seconds_between(drive.fixes.front().stamp, drive.fixes.back().stamp));
 }
 
 std::string words_for_poor_odometry(const PlacedDrive& placed) {
@@ -267,7 +291,7 @@ ModeledDrive Fusion::estimated_from(PlacedDrive placed, const FusionSettings& se
   ModeledDrive modeled;
   FusionSettings decision = decision_on(settings);
   modeled.placed = std::move(placed);
-  adapt_to_scale(decision, registry_, modeled);
+  adapt_to_scales(!settings.calibration, decision, registry_, modeled);
   if (modeled.placed.start.follows_fixes) (void)leave_out_unseen(settings, decision, modeled);
   TimeOffsetSearch delays(modeled.placed, drive_.sensors, registry_, between_);
   const auto offsets = estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
@@ -311,6 +335,30 @@ ModeledDrive Fusion::searched(const FusionSettings& settings) {
   return modeled;
 }
 
+ModeledDrive Fusion::on_clock_of_fixes(ModeledDrive modeled, const FusionSettings& settings) {
+  constexpr double kGain = 2;  // little, because clocks do drift
+  constexpr int kMostRounds = 3;
+  const bool has_one_clock = drive_.relative.empty() && drive_.sensors.empty();
+  if (!has_one_clock || modeled.noise.parameters.empty()) return modeled;
+  if (modeled.noise.is_poor_odometry(modeled.placed.odometry_name)) return modeled;
+  ClockDrift drift;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const std::optional<ClockDrift> left =
+        find_clock_drift(modeled.placed, drive_.sensors, modeled.settings, registry_, between_);
+    if (left && round > 0) drift.sigma = left->sigma;  // with the noise that is left
+    if (!left || !left->is_probable) break;
+    const ClockDrift together{drift.rate + left->rate, left->sigma};
+    const PreparedDrive moved = without_drift(drive_, together);
+    ModeledDrive other = Fusion(moved, registry_, between_).searched(settings);
+    if (!(modeled.noise.cost - other.noise.cost > kGain)) break;
+    modeled = std::move(other);
+    drift = together;
+  }
+  modeled.clock_drift = drift;
+  if (drift.rate != 0) modeled.placed.warnings.push_back(words_for_drift(drift, drive_));
+  return modeled;
+}
+
 void Fusion::add_deviations(ModeledDrive& modeled) const {
   if (modeled.noise.parameters.empty()) return;
   find_deviations(modeled.placed, drive_.sensors, modeled.decision, registry_, modeled.noise, between_);
@@ -324,7 +372,7 @@ ModeledDrive Fusion::estimated(const FusionSettings& settings) {
 
 ModeledDrive Fusion::model(const FusionSettings& settings) {
   refuse_misreading(placed(decision_on(settings)));
-  ModeledDrive modeled = searched(settings);
+  ModeledDrive modeled = on_clock_of_fixes(searched(settings), settings);
   if (modeled.odometry_late_s > 0)
     modeled.placed.warnings.push_back(words_for_late_odometry(modeled.odometry_late_s));
   add_deviations(modeled);

@@ -34,6 +34,7 @@
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
+#include <waymark/tools/drive/estimation/clock_drift.hpp>
 #include <waymark/tools/drive/estimation/noise.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/model/minimize.hpp>
@@ -49,6 +50,7 @@ struct ModeledDrive {
   NoiseEstimate noise;      ///< without parameters if the noise is as stated
   /// by which the fixes seem to come before they were measured: the stamps of the odometry are late. 0: they are not
   double odometry_late_s = 0;
+  ClockDrift clock_drift{};  ///< of which the odometry was freed
   std::vector<std::string> sensor_warnings;
   /// groups of receivers whose fixes are taken as not late; an only receiver is ""
   std::vector<std::string> without_delay;
@@ -86,10 +88,11 @@ class Fusion {
   Fusion(const PreparedDrive& drive, const TypeRegistry& registry, std::function<void()> between = {})
       : drive_(drive), registry_(registry), between_(std::move(between)) {}
 
-  /// Does the steps before the graph: placing, delays and noise. The document is empty.
+  /// Does the steps before the graph: placing, delays and noise. The document is empty. A clock that drifts is kept.
   /// @throws errors of the steps
   [[nodiscard]] ModeledDrive estimated(const FusionSettings& settings);
-  /// Does the steps up to the graph. An odometry whose stamps seem to be late is told.
+  /// Does the steps up to the graph. An odometry whose stamps seem to be late is told; one whose clock drifts is
+  /// freed of that (clock_drift.hpp), and told.
   /// @throws InputError if the odometry or the positions were read in a wrong unit or sense (misreading.hpp);
   /// errors of the steps
   [[nodiscard]] ModeledDrive model(const FusionSettings& settings);
@@ -112,6 +115,9 @@ class Fusion {
   /// As estimated(), without the deviations of the noise.
   [[nodiscard]] ModeledDrive searched(const FusionSettings& settings);
   void add_deviations(ModeledDrive& modeled) const;
+  /// Returns the drive with the odometry on the clock of the fixes, if its own one drifts and that is more probable. A
+  /// drift that the noise hid is found in steps.
+  [[nodiscard]] ModeledDrive on_clock_of_fixes(ModeledDrive modeled, const FusionSettings& settings);
   [[nodiscard]] ModeledDrive estimated_from(PlacedDrive placed, const FusionSettings& settings);
   /// Returns the drive with a start along the fixes, if that is more probable: the odometry is then worth little.
   [[nodiscard]] std::optional<ModeledDrive> along_fixes(const PlacedDrive& usual,

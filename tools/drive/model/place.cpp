@@ -106,7 +106,8 @@ bool leave_out_outvoted(std::span<const std::size_t> voices, PlacedDrive& placed
 }
 
 /// Rejects fixes of sources that contradict the others, and names these.
-void let_sources_agree(const FusionSettings& settings, PlacedDrive& placed) {
+/// @param timeline with the turns as the vehicle made them
+void let_sources_agree(const Timeline& timeline, const FusionSettings& settings, PlacedDrive& placed) {
   std::vector<std::string> names;
   std::vector<std::size_t> voices;
   for (std::size_t source = 0; source < placed.time_offsets_s.size(); ++source) {
@@ -125,7 +126,7 @@ void let_sources_agree(const FusionSettings& settings, PlacedDrive& placed) {
   }
   const bool any_outvoted = leave_out_outvoted(voices, placed);
   if (!found.empty() || any_outvoted)
-    placed.start = make_start(placed.timeline, placed.fixes, placed.standstill_mps, settings.initial_guess);
+    placed.start = make_start(timeline, placed.fixes, placed.standstill_mps, settings.initial_guess);
 }
 
 /// Returns the rough positions of the first sensor that has any within the drive.
@@ -201,7 +202,21 @@ void compare_with_fixes(const PreparedDrive& drive, std::span<const Eigen::Vecto
       of_selected<Fix>(placed.fixes, placed.fixes, is_used),
       of_selected<Eigen::Vector3d>(placed.fixes, antenna, is_used), place, placed.receivers, of_several);
   placed.speed_factor = compared.speed_factor;
+  placed.turn_factor = compared.turn_factor;
   for (std::string& warning : compared.warnings) placed.warnings.push_back(std::move(warning));
+}
+
+std::vector<Eigen::Vector3d> reckoned_antenna(const Timeline& timeline, const PlacedDrive& placed) {
+  const std::vector<Eigen::Vector3d> poses =
+      dead_reckon(timeline, Eigen::Vector3d::Zero(), placed.standstill_mps);
+  return antenna_at_fixes(timeline, poses, placed.fixes);
+}
+
+/// Returns the drive with the turns that the vehicle made, as far as the fixes show by what factor they were read.
+Timeline with_true_turns(Timeline timeline, const PlacedDrive& placed) {
+  for (Interval& interval : timeline.intervals)
+    if (!interval.bridged) interval.yaw_rate_radps /= placed.turn_factor.value_or(1);
+  return timeline;
 }
 
 }  // namespace
@@ -224,17 +239,16 @@ PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, co
     placed.start.note = "no receiver: rough positions of a sensor are the start";
     return placed;
   }
-  const std::vector<Eigen::Vector3d> reckoned =
-      dead_reckon(timeline, Eigen::Vector3d::Zero(), placed.standstill_mps);
-  const std::vector<Eigen::Vector3d> antenna = antenna_at_fixes(timeline, reckoned, placed.fixes);
   placed.warnings = drive.report.warnings;
-  compare_with_fixes(drive, antenna, placed);
-  placed.gate = apply_gate(placed.fixes, antenna, gates_of(placed, settings, registry));
+  compare_with_fixes(drive, reckoned_antenna(timeline, placed), placed);
+  const Timeline turned = with_true_turns(timeline, placed);
+  placed.gate =
+      apply_gate(placed.fixes, reckoned_antenna(turned, placed), gates_of(placed, settings, registry));
   require_accepted_fix(placed.gate);
   if (std::string warning = warning_of(placed.gate); !warning.empty())
     placed.warnings.push_back(std::move(warning));
-  placed.start = make_start(timeline, placed.fixes, placed.standstill_mps, settings.initial_guess);
-  let_sources_agree(settings, placed);
+  placed.start = make_start(turned, placed.fixes, placed.standstill_mps, settings.initial_guess);
+  let_sources_agree(turned, settings, placed);
   for (std::size_t i = 0; i < placed.fixes.size(); ++i)
     placed.fixes[i].vertex = vertex_of(timeline.fix_node[i]);
   placed.surroundings = std::make_shared<const DriveSurroundings>(drive, placed.fixes);

@@ -43,6 +43,7 @@ struct PlacedDrive {
   std::vector<std::string> warnings;         ///< of the preparation; suspicious units, signs, jumps
   std::set<std::string> left_out{};          ///< names of sources that others contradict
   std::optional<double> speed_factor{};      ///< of the odometry, far from 1 (Shape::speed_factor)
+  std::optional<double> turn_factor{};       ///< the same of its turns (Shape::turn_factor)
   std::string misreading{};                  ///< also a warning; Fusion::model() refuses such a drive
   std::optional<FirstPose> first_pose{};     ///< as PreparedDrive::first_pose
   /// what plugins may know of the whole drive; null: nothing

@@ -166,4 +166,12 @@ TEST_CASE("misreading: coordinates that were written wrong are named, where the 
                         Catch::Contains("unless latitude and longitude are exchanged"));
 }
 
+TEST_CASE("misreading: a gyro of a wrong scale is a matter of calibration, not of units") {
+  for (const double factor : {0.3, 0.7, 1.4, 2.5}) {
+    INFO("turns " << factor << " times those of the vehicle");
+    CHECK(sentence(1, factor, {.seconds = 400}).empty());
+    CHECK(sentence(1, factor, {.fix_noise_m = 1, .seconds = 400}).empty());
+  }
+}
+
 }  // namespace misreading_test

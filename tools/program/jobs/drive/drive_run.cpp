@@ -114,10 +114,12 @@ evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, drive::ModeledDri
     if (const auto lasting = lasting_innovations(document, modeled.modelings))
       evaluation.prediction = lasting->statistics;
   }
-  if (summary.converged())
-    evaluation.sources = compare_sources(run.loaded.drive, modeled, evaluation, run.registry, run.console);
-  if (summary.converged())
-    evaluation.held_out = hold_out(run.loaded.drive, modeled, run.registry, run.console);
+  if (!summary.converged()) return evaluation;
+  std::optional<drive::PreparedDrive> moved;  // what is fused again for a comparison has the same clock
+  if (modeled.clock_drift.rate != 0) moved = drive::without_drift(run.loaded.drive, modeled.clock_drift);
+  const drive::PreparedDrive& drive = moved ? *moved : run.loaded.drive;
+  evaluation.sources = compare_sources(drive, modeled, evaluation, run.registry, run.console);
+  evaluation.held_out = hold_out(drive, modeled, run.registry, run.console);
   return evaluation;
 }
 

@@ -1,0 +1,119 @@
+// The clock of the odometry beside that of GNSS: stamps that are late are told, a clock that drifts is mended.
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include <waymark/tools/drive/model/fuse.hpp>
+#include <waymark/types_se2/se2.hpp>
+
+#include "support/registry.hpp"
+
+namespace odometry_clock_test {
+
+using namespace waymark;
+using namespace waymark::drive;
+using namespace waymark_test;
+
+namespace {
+
+/// Five minutes of bends at 10 Hz and 8 to 16 m/s, with fixes of 2 cm at 1 Hz.
+/// @param drift seconds by which the odometry's clock hurries in a second
+/// @param truth receives the positions at the fixes
+PreparedDrive bends(double odometry_late_s, double drift = 0, std::vector<Eigen::Vector2d>* truth = nullptr) {
+  constexpr double kStep_s = 0.1;
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0, 1);
+  PreparedDrive drive;
+  drive.receivers = {{"gnss"}};
+  Pose2<double> pose(0, 0, 0.7);
+  const auto speed_at = [](double t) { return 12 + 4 * std::sin(t / 7); };
+  const auto turn_at = [](double t) { return 0.15 * std::sin(t / 11) + 0.1 * std::sin(t / 4); };
+  for (int i = 0; i <= 3000; ++i) {
+    const double t = i * kStep_s;
+    drive.odometry.push_back({.stamp = Stamp::from_seconds(1000 + t * (1 + drift) + odometry_late_s),
+                              .speed_mps = speed_at(t) + 0.03 * normal(random),
+                              .yaw_rate_radps = turn_at(t) + 0.002 * normal(random)});
+    if (i % 10 == 0 && i >= 10 && i <= 2990) {
+      Fix fix;
+      fix.stamp = Stamp::from_seconds(1000 + t);
+      fix.epoch = i / 10 - 1;
+      fix.position = pose.position + 0.02 * Eigen::Vector2d(normal(random), normal(random));
+      fix.covariance = 4e-4 * Eigen::Matrix2d::Identity();
+      drive.fixes.push_back(fix);
+      if (truth != nullptr) truth->push_back(pose.position);
+    }
+    const double middle = t + 0.5 * kStep_s;
+    pose = compose(
+        pose, se2_exp<double>(Eigen::Vector3d(speed_at(middle) * kStep_s, 0, turn_at(middle) * kStep_s)));
+  }
+  return drive;
+}
+
+/// Returns what is said about a late odometry; empty: nothing.
+std::string told(const PreparedDrive& drive) {
+  for (const std::string& warning : fuse(drive, {}, registry()).model.warnings())
+    if (warning.find("the odometry is probably late") != std::string::npos) return warning;
+  return {};
+}
+
+double rms_at_fixes(const FusedDrive& fused, std::span<const Eigen::Vector2d> truth) {
+  const Graph& graph = fused.model.document.graph;
+  double sum = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const VertexId vertex = fused.model.placed.fixes[i].vertex;
+    sum += (Eigen::Vector2d(graph.value(graph.find(vertex).value()).data()) - truth[i]).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(truth.size()));
+}
+
+}  // namespace
+
+TEST_CASE("late odometry: it is told by how much, with what to state") {
+  CHECK_THAT(told(bends(0.1)), Catch::Contains("add -0.10") || Catch::Contains("add -0.09"));
+  CHECK_THAT(told(bends(0.4)), Catch::Contains("add -0.40") || Catch::Contains("add -0.39"));
+}
+
+TEST_CASE(
+    "late odometry: nothing is said where clocks agree, where fixes may be late, or a delay is stated") {
+  CHECK(told(bends(0)).empty());
+  CHECK(told(bends(-0.1)).empty());
+  PreparedDrive stated = bends(0.1);
+  stated.receivers.front().delay_is_stated = true;
+  CHECK(told(stated).empty());
+}
+
+TEST_CASE("clock drift: poses are at the times of the fixes, and the drift is told") {
+  for (const double drift : {60e-6, -100e-6}) {  // 18 and 30 ms in all: 0.2 and 0.4 m at 12 m/s
+    std::vector<Eigen::Vector2d> truth;
+    const PreparedDrive drive = bends(0, drift, &truth);
+    const FusedDrive fused = fuse(drive, {}, registry());
+    const ClockDrift& found = fused.model.clock_drift;
+    CHECK(found.rate == Approx(-drift).margin(4 * found.sigma));
+    CHECK(found.sigma < 30e-6);
+    CHECK(rms_at_fixes(fused, truth) < 0.04);
+    CHECK(std::any_of(fused.model.placed.warnings.begin(), fused.model.placed.warnings.end(),
+                      [](const std::string& warning) { return warning.find("ppm") != std::string::npos; }));
+  }
+}
+
+TEST_CASE("clock drift: there is none where clocks agree, nor where fixes know too little") {
+  CHECK(fuse(bends(0), {}, registry()).model.clock_drift.rate == 0);
+  PreparedDrive rough = bends(0, 60e-6);
+  for (Fix& fix : rough.fixes) fix.covariance = 100 * Eigen::Matrix2d::Identity();
+  CHECK(fuse(rough, {}, registry()).model.clock_drift.rate == 0);
+}
+
+TEST_CASE("clock drift: the readings move, both clocks agree at the first fix, and the end stays covered") {
+  const PreparedDrive drive = bends(0);
+  const PreparedDrive moved = without_drift(drive, {.rate = -1e-3});
+  const Stamp first = drive.fixes.front().stamp;
+  REQUIRE(moved.odometry.size() == drive.odometry.size() + 1);
+  CHECK(moved.odometry.back().stamp == drive.odometry.back().stamp);
+  for (std::size_t i = 0; i < drive.odometry.size(); i += 500)
+    CHECK(seconds_between(first, moved.odometry[i].stamp) ==
+          Approx(0.999 * seconds_between(first, drive.odometry[i].stamp)).margin(1e-8));
+}
+
+}  // namespace odometry_clock_test
