@@ -10,6 +10,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/clocks/clock_sync.hpp>
+#include <waymark/tools/drive/clocks/late_quantity.hpp>
 #include <waymark/tools/drive/clocks/odometry_check.hpp>
 #include <waymark/tools/drive/clocks/offset_names.hpp>
 #include <waymark/tools/drive/clocks/synchronise.hpp>
@@ -124,21 +125,51 @@ bool is_another_clock(const PreparedDrive& drive, const ClockOffset& offset) {
                           kStands_mps, {});
 }
 
-/// Compares the clock of the only odometry with that of the fixes.
-PreparedDrive with_clock_told(PreparedDrive drive, const DriveLogs& logs, DriveDescription description,
-                              ClocksApart treatment) {
-  const std::optional<ClockOffset> offset = offset_shown(drive.odometry, drive.fixes);
-  if (!offset) return drive;
-  const bool moves = treatment == ClocksApart::move && is_another_clock(drive, *offset);
+/// Moves the stamps of the only odometry to another clock, or tells it.
+void tell_clock(const ClockOffset& offset, const DriveLogs& logs, DriveDescription& description,
+                ClocksApart treatment, PreparedDrive& drive) {
+  const bool moves = treatment == ClocksApart::move && is_another_clock(drive, offset);
   if (moves) {
     OdometryConfig& odometry = config_of(drive.odometry_name, description);
-    odometry.speed_delay_s += offset->late_s;
-    odometry.yaw_rate_delay_s += offset->late_s;
+    odometry.speed_delay_s += offset.late_s;
+    odometry.yaw_rate_delay_s += offset.late_s;
     drive = prepare_drive(logs, description);
   }
-  drive.report.warnings.push_back(
-      clock_warning("the odometry", *offset,
-                    moves ? "its stamps are moved by that; " + statement(*offset) : remedy(*offset)));
+  drive.report.warnings.push_back(clock_warning(
+      "the odometry", offset, moves ? "its stamps are moved by that; " + statement(offset) : remedy(offset)));
+}
+
+/// Moves the readings of a quantity that is late alone, or tells it. What is stated of delays is not corrected: who
+/// states them knows more than the fixes do.
+void tell_late_quantity(const LateQuantity& late, const DriveLogs& logs, DriveDescription& description,
+                        ClocksApart treatment, PreparedDrive& drive) {
+  OdometryConfig& odometry = config_of(drive.odometry_name, description);
+  const bool moves = treatment == ClocksApart::move && !states_delays(odometry);
+  double& delay_s = late.delay_in(odometry);
+  const std::string key = fmt::format("'{}: {:.2f}' for 'odometry'", late.key(), delay_s + late.late_s);
+  if (moves) {
+    delay_s += late.late_s;
+    drive = prepare_drive(logs, description);
+  }
+  drive.report.tells_late_quantity = !moves;
+  drive.report.warnings.push_back(late_quantity_warning(
+      "the odometry", late, moves ? "its readings are moved by that; state " + key : "state " + key));
+}
+
+/// Compares speed and yaw rate of the only odometry with the fixes, and what is left with their clock. A quantity that
+/// is late alone looks like a clock that is wrong by half of it.
+PreparedDrive with_clock_told(PreparedDrive drive, const DriveLogs& logs, DriveDescription description,
+                              ClocksApart treatment) {
+  std::optional<ClockOffset> offset = offset_shown(drive.odometry, drive.fixes);
+  if (offset && std::abs(offset->late_s) > kOneClock_s) {
+    tell_clock(*offset, logs, description, treatment, drive);
+    return drive;
+  }
+  if (const auto late = late_quantity_shown(drive.odometry, drive.fixes, drive.yaw_rate_at_rest)) {
+    offset = offset_shown(without_lateness(drive.odometry, *late), drive.fixes);
+    tell_late_quantity(*late, logs, description, treatment, drive);
+  }
+  if (offset) tell_clock(*offset, logs, description, treatment, drive);
   return drive;
 }
 

@@ -1,0 +1,120 @@
+#include <waymark/tools/drive/clocks/late_quantity.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include <waymark/tools/drive/clocks/clock_sync.hpp>
+#include <waymark/tools/drive/clocks/gnss_motion.hpp>
+#include <waymark/tools/drive/clocks/motion_lags.hpp>
+#include <waymark/tools/drive/logs/clock_offsets.hpp>
+
+namespace waymark::drive {
+namespace {
+
+constexpr double kLateDeviations = 4;
+constexpr double kLeastDifference_s = 0.15;
+constexpr double kAntennaSigma_m = 0.3;  // by which a stated place of an antenna may be wrong
+
+/// Tells whether a lag itself is late: fixes are never early, so it is not their delay.
+bool is_late(double lag_s, double variance_s2) {
+  constexpr double kLeast_s = 0.1;
+  return lag_s > kLeast_s && lag_s > kLateDeviations * std::sqrt(variance_s2);
+}
+
+bool is_late_speed(const MotionLags& lags) {
+  constexpr double kDeviationsIfLate = 3;
+  const bool is_itself_late = is_late(lags.speed_s, lags.covariance_s2(0, 0));
+  const double deviations = is_itself_late ? kDeviationsIfLate : kLateDeviations;
+  return lags.difference_s() > std::max(kLeastDifference_s, deviations * lags.difference_sigma_s());
+}
+
+bool is_late_yaw_rate(const MotionLags& lags) {
+  return is_late(lags.yaw_rate_s, lags.covariance_s2(1, 1)) && std::abs(lags.arm_m) < 3 * kAntennaSigma_m &&
+         -lags.difference_s() > std::max(kLeastDifference_s, kLateDeviations * lags.difference_sigma_s());
+}
+
+/// Returns the lags against one receiver, if they are known well.
+std::optional<MotionLags> known_lags(const std::vector<OdometrySample>& odometry,
+                                     const std::vector<Fix>& fixes, double arm_sigma_m) {
+  constexpr double kPoor_s = 0.2;
+  const auto lags = estimate_motion_lags(odometry, of_one_receiver(fixes), arm_sigma_m);
+  return lags && lags->difference_sigma_s() < kPoor_s ? lags : std::nullopt;
+}
+
+/// Returns what the receiver says that knows best. Empty: nothing is known, or two contradict each other.
+std::optional<MotionLags> best_lags(const std::vector<OdometrySample>& odometry,
+                                    const std::vector<Fix>& fixes, double arm_sigma_m) {
+  std::map<int, std::vector<Fix>> receivers;
+  for (const Fix& fix : fixes)
+    if (fix.status != FixStatus::withheld) receivers[fix.source].push_back(fix);
+  std::vector<MotionLags> told;
+  for (const auto& [source, own] : receivers)
+    if (const auto lags = known_lags(odometry, own, arm_sigma_m)) told.push_back(*lags);
+  if (told.empty()) return std::nullopt;
+  const MotionLags best = *std::min_element(told.begin(), told.end(), [](const auto& a, const auto& b) {
+    return a.difference_sigma_s() < b.difference_sigma_s();
+  });
+  const bool all_agree = std::all_of(told.begin(), told.end(), [&](const MotionLags& lags) {
+    return std::abs(lags.difference_s() - best.difference_s()) <
+           kLateDeviations * std::hypot(lags.difference_sigma_s(), best.difference_sigma_s(), kSmoothing_s);
+  });
+  return all_agree ? std::optional(best) : std::nullopt;
+}
+
+}  // namespace
+
+std::string LateQuantity::name() const {
+  return kind == Kind::speed ? "speed" : "yaw rate";
+}
+
+std::string LateQuantity::key() const {
+  return kind == Kind::speed ? "speed_delay" : "yaw_rate_delay";
+}
+
+double& LateQuantity::delay_in(OdometryConfig& odometry) const {
+  return kind == Kind::speed ? odometry.speed_delay_s : odometry.yaw_rate_delay_s;
+}
+
+std::optional<LateQuantity> late_quantity_shown(const std::vector<OdometrySample>& odometry,
+                                                const std::vector<Fix>& fixes, const YawRateAtRest& rest) {
+  constexpr double kUnstatedSigma_m = 1.5;
+  const std::optional<MotionLags> lags = best_lags(odometry, fixes, kAntennaSigma_m);
+  if (!lags) return std::nullopt;
+  if (is_late_speed(*lags))
+    return LateQuantity{LateQuantity::Kind::speed, lags->difference_s(), lags->difference_sigma_s()};
+  if (!is_late_yaw_rate(*lags) || rest.is_derived()) return std::nullopt;
+  // Nearly all antennas are ahead of the rear axle, and few are stated.
+  const bool is_stated = std::any_of(fixes.begin(), fixes.end(),
+                                     [](const Fix& fix) { return fix.antenna_m != Eigen::Vector2d::Zero(); });
+  const auto anywhere = is_stated ? lags : best_lags(odometry, fixes, kUnstatedSigma_m);
+  if (!anywhere || !is_late_yaw_rate(*anywhere)) return std::nullopt;
+  return LateQuantity{LateQuantity::Kind::yaw_rate, -anywhere->difference_s(),
+                      anywhere->difference_sigma_s()};
+}
+
+std::vector<OdometrySample> without_lateness(const std::vector<OdometrySample>& odometry,
+                                             const LateQuantity& late) {
+  OdometryConfig delays;
+  late.delay_in(delays) = late.late_s;
+  return without_delays(odometry, delays.speed_delay_s, delays.yaw_rate_delay_s);
+}
+
+bool states_delays(const OdometryConfig& odometry) {
+  const auto differs = [&](const LogConfig& log) {
+    return log.request.time_offset_s != odometry.logs.front().request.time_offset_s;
+  };
+  return !odometry.delay_place.empty() || std::any_of(odometry.logs.begin(), odometry.logs.end(), differs);
+}
+
+std::string late_quantity_warning(const std::string& odometry, const LateQuantity& late,
+                                  const std::string& cure) {
+  const bool is_speed = late.kind == LateQuantity::Kind::speed;
+  return fmt::format("{}'s {} seems {:.2f} +- {:.2f} s late, its {} not: {}", odometry, late.name(),
+                     late.late_s, std::hypot(late.sigma_s, kSmoothing_s), is_speed ? "yaw rate" : "speed",
+                     cure);
+}
+
+}  // namespace waymark::drive
