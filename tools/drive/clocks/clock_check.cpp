@@ -139,36 +139,54 @@ void tell_clock(const ClockOffset& offset, const DriveLogs& logs, DriveDescripti
       "the odometry", offset, moves ? "its stamps are moved by that; " + statement(offset) : remedy(offset)));
 }
 
-/// Moves the readings of a quantity that is late alone, or tells it. What is stated of delays is not corrected: who
-/// states them knows more than the fixes do.
-void tell_late_quantity(const LateQuantity& late, const DriveLogs& logs, DriveDescription& description,
-                        ClocksApart treatment, PreparedDrive& drive) {
-  OdometryConfig& odometry = config_of(drive.odometry_name, description);
-  const bool moves = treatment == ClocksApart::move && !states_delays(odometry);
-  double& delay_s = late.delay_in(odometry);
-  const std::string key = fmt::format("'{}: {:.2f}' for 'odometry'", late.key(), delay_s + late.late_s);
-  if (moves) {
-    delay_s += late.late_s;
+/// Moves the readings of a quantity that is late alone, until it no longer is: what a late speed seems to contradict was
+/// mended by the fixes. @returns how late it was in all
+LateQuantity move_late_quantity(LateQuantity late, const DriveLogs& logs, DriveDescription& description,
+                                PreparedDrive& drive) {
+  constexpr int kMostMoves = 3;
+  double& delay_s = late.delay_in(config_of(drive.odometry_name, description));
+  delay_s = late.late_s;
+  drive = prepare_drive(logs, description);
+  for (int moves = 1; moves < kMostMoves; ++moves) {
+    const auto left = late_quantity_shown(drive.odometry, drive.fixes, drive.yaw_rate_at_rest);
+    if (!left || left->kind != late.kind) break;
+    late.late_s += left->late_s;
+    delay_s = late.late_s;
     drive = prepare_drive(logs, description);
   }
-  drive.report.tells_late_quantity = !moves;
-  drive.report.warnings.push_back(late_quantity_warning(
-      "the odometry", late, moves ? "its readings are moved by that; state " + key : "state " + key));
+  return late;
+}
+
+/// Treats a quantity that is late alone. What is stated of delays is left as it is: who states them may know more than
+/// the fixes do. @returns the odometry without it
+std::vector<OdometrySample> without_late_quantity(const LateQuantity& late, const DriveLogs& logs,
+                                                  DriveDescription& description, ClocksApart treatment,
+                                                  PreparedDrive& drive) {
+  const bool moves =
+      treatment == ClocksApart::move && !states_delays(config_of(drive.odometry_name, description));
+  if (moves) {
+    const LateQuantity moved = move_late_quantity(late, logs, description, drive);
+    drive.report.warnings.push_back(
+        late_quantity_warning("the odometry", moved,
+                              fmt::format("its readings are moved by that; state '{}: {:.2f}' for 'odometry'",
+                                          moved.key(), moved.late_s)));
+    return drive.odometry;
+  }
+  drive.report.tells_late_quantity = true;
+  drive.report.warnings.push_back(late_quantity_warning("the odometry", late, late.increase()));
+  return without_lateness(drive.odometry, late);
 }
 
 /// Compares speed and yaw rate of the only odometry with the fixes, and what is left with their clock. A quantity that
-/// is late alone looks like a clock that is wrong by half of it.
+/// is late alone looks like a clock that is wrong.
 PreparedDrive with_clock_told(PreparedDrive drive, const DriveLogs& logs, DriveDescription description,
                               ClocksApart treatment) {
   std::optional<ClockOffset> offset = offset_shown(drive.odometry, drive.fixes);
-  if (offset && std::abs(offset->late_s) > kOneClock_s) {
-    tell_clock(*offset, logs, description, treatment, drive);
-    return drive;
-  }
-  if (const auto late = late_quantity_shown(drive.odometry, drive.fixes, drive.yaw_rate_at_rest)) {
-    offset = offset_shown(without_lateness(drive.odometry, *late), drive.fixes);
-    tell_late_quantity(*late, logs, description, treatment, drive);
-  }
+  const bool is_far = offset && std::abs(offset->late_s) > kOneClock_s;
+  const auto late =
+      is_far ? std::nullopt : late_quantity_shown(drive.odometry, drive.fixes, drive.yaw_rate_at_rest);
+  if (late)
+    offset = offset_shown(without_late_quantity(*late, logs, description, treatment, drive), drive.fixes);
   if (offset) tell_clock(*offset, logs, description, treatment, drive);
   return drive;
 }

@@ -64,6 +64,21 @@ std::optional<MotionLags> best_lags(const std::vector<OdometrySample>& odometry,
   return all_agree ? std::optional(best) : std::nullopt;
 }
 
+/// Returns how late a quantity is, if the other one is on time and the fixes have a delay of the usual size (a Kalman
+/// step on the covariance of both lags).
+LateQuantity with_other_on_time(LateQuantity::Kind kind, const MotionLags& lags) {
+  constexpr double kUsualDelay_s = 0.15;
+  const int late = kind == LateQuantity::Kind::speed ? 0 : 1;
+  const int other = 1 - late;
+  const Eigen::Vector2d found(lags.speed_s, lags.yaw_rate_s);
+  const Eigen::Vector2d gain =
+      lags.covariance_s2.col(other) / (lags.covariance_s2(other, other) + kUsualDelay_s * kUsualDelay_s);
+  const Eigen::Vector2d expected = found - gain * found[other];
+  const Eigen::Matrix2d covariance = lags.covariance_s2 - gain * lags.covariance_s2.row(other);
+  const Eigen::RowVector2d difference = Eigen::RowVector2d::Unit(late) - Eigen::RowVector2d::Unit(other);
+  return {kind, difference * expected, std::sqrt(difference * covariance * difference.transpose())};
+}
+
 }  // namespace
 
 std::string LateQuantity::name() const {
@@ -72,6 +87,10 @@ std::string LateQuantity::name() const {
 
 std::string LateQuantity::key() const {
   return kind == Kind::speed ? "speed_delay" : "yaw_rate_delay";
+}
+
+std::string LateQuantity::increase() const {
+  return fmt::format("increase '{}' by {:.2f}", key(), late_s);
 }
 
 double& LateQuantity::delay_in(OdometryConfig& odometry) const {
@@ -83,8 +102,7 @@ std::optional<LateQuantity> late_quantity_shown(const std::vector<OdometrySample
   constexpr double kUnstatedSigma_m = 1.5;
   const std::optional<MotionLags> lags = best_lags(odometry, fixes, kAntennaSigma_m);
   if (!lags) return std::nullopt;
-  if (is_late_speed(*lags))
-    return LateQuantity{LateQuantity::Kind::speed, lags->difference_s(), lags->difference_sigma_s()};
+  if (is_late_speed(*lags)) return with_other_on_time(LateQuantity::Kind::speed, *lags);
   if (!is_late_yaw_rate(*lags) || rest.is_derived()) return std::nullopt;
   // Nearly all antennas are ahead of the rear axle, and few are stated.
   const bool is_stated = std::any_of(fixes.begin(), fixes.end(),
@@ -106,7 +124,8 @@ bool states_delays(const OdometryConfig& odometry) {
   const auto differs = [&](const LogConfig& log) {
     return log.request.time_offset_s != odometry.logs.front().request.time_offset_s;
   };
-  return !odometry.delay_place.empty() || std::any_of(odometry.logs.begin(), odometry.logs.end(), differs);
+  return !odometry.delay_place.empty() || odometry.speed_delay_s != 0 || odometry.yaw_rate_delay_s != 0 ||
+         std::any_of(odometry.logs.begin(), odometry.logs.end(), differs);
 }
 
 std::string late_quantity_warning(const std::string& odometry, const LateQuantity& late,

@@ -14,13 +14,17 @@ namespace waymark::drive {
 struct LateQuantity {
   enum class Kind { speed, yaw_rate };
   Kind kind = Kind::speed;
-  double late_s = 0;  ///< positive, later than the other one
+  /// positive, later than the other one. A gyro is on time and fixes are seldom late, within 0.15 s: where the drive
+  /// knows less of them than that, this counts
+  double late_s = 0;
   double sigma_s = 0;
 
   /// Returns "speed" or "yaw rate", for messages.
   [[nodiscard]] std::string name() const;
   /// Returns "speed_delay" or "yaw_rate_delay", the key of the drive.yaml.
   [[nodiscard]] std::string key() const;
+  /// Returns what to do where nothing is moved: "increase 'speed_delay' by 0.41".
+  [[nodiscard]] std::string increase() const;
   /// Returns the delay of an odometry that is to be larger by late_s.
   [[nodiscard]] double& delay_in(OdometryConfig& odometry) const;
 };
@@ -38,7 +42,7 @@ struct LateQuantity {
 [[nodiscard]] std::vector<OdometrySample> without_lateness(const std::vector<OdometrySample>& odometry,
                                                            const LateQuantity& late);
 
-/// Tells whether the description has a delay of one quantity: of itself, or by parts with different offsets.
+/// Tells whether the delay of one quantity is stated: by its key (0 as well), or by parts with different offsets.
 [[nodiscard]] bool states_delays(const OdometryConfig& odometry);
 
 /// @param odometry "the odometry" or the name of one of several @param cure what to do
