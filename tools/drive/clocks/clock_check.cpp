@@ -125,6 +125,15 @@ bool is_another_clock(const PreparedDrive& drive, const ClockOffset& offset) {
                           kStands_mps, {});
 }
 
+/// Returns what else may be the reason that an odometry seems late by less than two seconds; empty: nothing.
+std::string other_reason(const ClockOffset& offset, const PreparedDrive& drive) {
+  if (offset.late_s < 0 || offset.late_s > kOneClock_s || yaw_rate_is_late(drive.odometry, drive.fixes))
+    return "";
+  return fmt::format(
+      "; or 'speed_delay: {:.2f}' if its speed alone is late (OBD, CAN): the turns do not tell which",
+      offset.late_s);
+}
+
 /// Moves the stamps of the only odometry to another clock, or tells it.
 void tell_clock(const ClockOffset& offset, const DriveLogs& logs, DriveDescription& description,
                 ClocksApart treatment, PreparedDrive& drive) {

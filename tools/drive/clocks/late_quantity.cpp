@@ -19,9 +19,9 @@ constexpr double kLeastDifference_s = 0.15;
 constexpr double kAntennaSigma_m = 0.3;  // by which a stated place of an antenna may be wrong
 
 /// Tells whether a lag itself is late: fixes are never early, so it is not their delay.
-bool is_late(double lag_s, double variance_s2) {
+bool is_late(double lag_s, double variance_s2, double deviations = kLateDeviations) {
   constexpr double kLeast_s = 0.1;
-  return lag_s > kLeast_s && lag_s > kLateDeviations * std::sqrt(variance_s2);
+  return lag_s > kLeast_s && lag_s > deviations * std::sqrt(variance_s2);
 }
 
 bool is_late_speed(const MotionLags& lags) {
@@ -39,7 +39,7 @@ bool is_late_yaw_rate(const MotionLags& lags) {
 /// Returns the lags against one receiver, if they are known well.
 std::optional<MotionLags> known_lags(const std::vector<OdometrySample>& odometry,
                                      const std::vector<Fix>& fixes, double arm_sigma_m) {
-  constexpr double kPoor_s = 0.2;
+  constexpr double kPoor_s = 0.15;
   const auto lags = estimate_motion_lags(odometry, of_one_receiver(fixes), arm_sigma_m);
   return lags && lags->difference_sigma_s() < kPoor_s ? lags : std::nullopt;
 }
@@ -111,6 +111,12 @@ std::optional<LateQuantity> late_quantity_shown(const std::vector<OdometrySample
   if (!anywhere || !is_late_yaw_rate(*anywhere)) return std::nullopt;
   return LateQuantity{LateQuantity::Kind::yaw_rate, -anywhere->difference_s(),
                       anywhere->difference_sigma_s()};
+}
+
+bool yaw_rate_is_late(const std::vector<OdometrySample>& odometry, const std::vector<Fix>& fixes) {
+  constexpr double kDeviations = 2;
+  const std::optional<MotionLags> lags = best_lags(odometry, fixes, kAntennaSigma_m);
+  return lags && is_late(lags->yaw_rate_s, lags->covariance_s2(1, 1), kDeviations);
 }
 
 std::vector<OdometrySample> without_lateness(const std::vector<OdometrySample>& odometry,

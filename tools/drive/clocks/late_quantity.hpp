@@ -38,6 +38,11 @@ struct LateQuantity {
                                                               const std::vector<Fix>& fixes,
                                                               const YawRateAtRest& rest);
 
+/// Tells whether the yaw rate shows that it is late itself, by two sigmas at least. If not, a clock that seems late may
+/// be a late speed alone.
+[[nodiscard]] bool yaw_rate_is_late(const std::vector<OdometrySample>& odometry,
+                                    const std::vector<Fix>& fixes);
+
 /// Returns the samples with the quantity moved earlier.
 [[nodiscard]] std::vector<OdometrySample> without_lateness(const std::vector<OdometrySample>& odometry,
                                                            const LateQuantity& late);
