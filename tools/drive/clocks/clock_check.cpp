@@ -144,8 +144,9 @@ void tell_clock(const ClockOffset& offset, const DriveLogs& logs, DriveDescripti
     odometry.yaw_rate_delay_s += offset.late_s;
     drive = prepare_drive(logs, description);
   }
-  drive.report.warnings.push_back(clock_warning(
-      "the odometry", offset, moves ? "its stamps are moved by that; " + statement(offset) : remedy(offset)));
+  const std::string cure = moves ? "its stamps are moved by that; " + statement(offset)
+                                 : remedy(offset) + other_reason(offset, drive);
+  drive.report.warnings.push_back(clock_warning("the odometry", offset, cure));
 }
 
 /// Moves the readings of a quantity that is late alone, until it no longer is: what a late speed seems to contradict was

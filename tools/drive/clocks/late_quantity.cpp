@@ -36,23 +36,39 @@ bool is_late_yaw_rate(const MotionLags& lags) {
          -lags.difference_s() > std::max(kLeastDifference_s, kLateDeviations * lags.difference_sigma_s());
 }
 
-/// Returns the lags against one receiver, if they are known well.
-std::optional<MotionLags> known_lags(const std::vector<OdometrySample>& odometry,
-                                     const std::vector<Fix>& fixes, double arm_sigma_m) {
-  constexpr double kPoor_s = 0.15;
-  const auto lags = estimate_motion_lags(odometry, of_one_receiver(fixes), arm_sigma_m);
-  return lags && lags->difference_sigma_s() < kPoor_s ? lags : std::nullopt;
+/// Returns the lags against speeds and courses of a receiver that gives both. Receivers and wheels smooth, and not by the
+/// same time.
+std::optional<MotionLags> lags_by_velocity(const std::vector<OdometrySample>& odometry,
+                                           const std::vector<Fix>& fixes) {
+  constexpr double kFarthest_s = 1.5;
+  constexpr double kFits = 0.8;  // correlation
+  const auto [speed, yaw_rate] = estimate_clock_offsets(odometry, fixes, {});
+  if (!speed || speed->against != "receiver's speed") return std::nullopt;
+  if (!yaw_rate || yaw_rate->against != "receiver's course") return std::nullopt;
+  if (std::min(speed->correlation, yaw_rate->correlation) < kFits) return std::nullopt;
+  if (std::max(std::abs(speed->late_s), std::abs(yaw_rate->late_s)) > kFarthest_s) return std::nullopt;
+  const Eigen::Vector2d sigma(std::hypot(speed->sigma_s, kSmoothing_s),
+                              std::hypot(yaw_rate->sigma_s, kSmoothing_s));
+  return MotionLags{speed->late_s, yaw_rate->late_s, sigma.cwiseAbs2().asDiagonal(), 0};
 }
 
-/// Returns what the receiver says that knows best. Empty: nothing is known, or two contradict each other.
+/// Adds the lags against one receiver, by its positions and by its velocity, if they are known well.
+void add_lags(const std::vector<OdometrySample>& odometry, const std::vector<Fix>& fixes, double arm_sigma_m,
+              std::vector<MotionLags>& told) {
+  constexpr double kPoor_s = 0.15;
+  for (const auto& lags : {estimate_motion_lags(odometry, of_one_receiver(fixes), arm_sigma_m),
+                           lags_by_velocity(odometry, fixes)})
+    if (lags && lags->difference_sigma_s() < kPoor_s) told.push_back(*lags);
+}
+
+/// Returns what those say that are known best. Empty: nothing is known, or two contradict each other.
 std::optional<MotionLags> best_lags(const std::vector<OdometrySample>& odometry,
                                     const std::vector<Fix>& fixes, double arm_sigma_m) {
   std::map<int, std::vector<Fix>> receivers;
   for (const Fix& fix : fixes)
     if (fix.status != FixStatus::withheld) receivers[fix.source].push_back(fix);
   std::vector<MotionLags> told;
-  for (const auto& [source, own] : receivers)
-    if (const auto lags = known_lags(odometry, own, arm_sigma_m)) told.push_back(*lags);
+  for (const auto& [source, own] : receivers) add_lags(odometry, own, arm_sigma_m, told);
   if (told.empty()) return std::nullopt;
   const MotionLags best = *std::min_element(told.begin(), told.end(), [](const auto& a, const auto& b) {
     return a.difference_sigma_s() < b.difference_sigma_s();

@@ -32,7 +32,8 @@ struct LateQuantity {
 /// Returns the quantity that is late by 0.15 s and four sigmas more than the other one against the fixes; a speed by
 /// three sigmas if it is late by four of its own as well, because fixes are never early. A yaw rate must be late
 /// itself: wheels that slip as they pull make speeds early, an antenna ahead of where it is stated makes bends early.
-/// Of several receivers the one that knows best tells, if no other one contradicts it. Withheld fixes do not count.
+/// Positions tell, and speeds with courses of a receiver that gives both. Of these, and of several receivers, the one
+/// that is known best tells, if no other one contradicts it. Withheld fixes do not count.
 /// @param rest of the same odometry: the yaw rate of wheels is as late as their speed
 [[nodiscard]] std::optional<LateQuantity> late_quantity_shown(const std::vector<OdometrySample>& odometry,
                                                               const std::vector<Fix>& fixes,

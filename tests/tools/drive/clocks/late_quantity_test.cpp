@@ -122,7 +122,8 @@ TEST_CASE("late quantity: a late yaw rate is named, unless wheels or steering te
   const auto late = readings.late();
   REQUIRE(late);
   CHECK(late->kind == LateQuantity::Kind::yaw_rate);
-  CHECK(late->increase() == "increase 'yaw_rate_delay' by 0.50");
+  CHECK(late->late_s == Approx(0.5).margin(0.02));
+  CHECK(LateQuantity{LateQuantity::Kind::yaw_rate, 0.5, 0}.increase() == "increase 'yaw_rate_delay' by 0.50");
   CHECK_FALSE(late_quantity_shown(readings.odometry, readings.fixes, {.stated_derived = true}));
 }
 
@@ -145,6 +146,13 @@ TEST_CASE("late quantity: a drive without bends tells nothing of the yaw rate") 
   for (std::size_t i = 0; i < readings.fixes.size(); ++i)
     readings.fixes[i].position = Eigen::Vector2d(9 * static_cast<double>(i), 0.5 * (i % 2 == 0 ? 1 : -1));
   CHECK_FALSE(readings.late());
+}
+
+TEST_CASE("late quantity: a yaw rate that is late with the speed is told apart from one that is on time") {
+  const Readings both = drive_with({.speed_late_s = 0.4, .yaw_rate_late_s = 0.4}, 0.5);
+  CHECK(yaw_rate_is_late(both.odometry, both.fixes));
+  const Readings speed = drive_with({.speed_late_s = 0.4}, 0.5);
+  CHECK_FALSE(yaw_rate_is_late(speed.odometry, speed.fixes));
 }
 
 TEST_CASE("late quantity: without it the samples are those of an odometry on time") {
