@@ -10,6 +10,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/clocks/clock_sync.hpp>
+#include <waymark/tools/drive/clocks/late_quantity.hpp>
 #include <waymark/tools/drive/clocks/odometry_check.hpp>
 #include <waymark/tools/drive/clocks/offset_names.hpp>
 #include <waymark/tools/drive/clocks/synchronise.hpp>
@@ -124,21 +125,79 @@ bool is_another_clock(const PreparedDrive& drive, const ClockOffset& offset) {
                           kStands_mps, {});
 }
 
-/// Compares the clock of the only odometry with that of the fixes.
-PreparedDrive with_clock_told(PreparedDrive drive, const DriveLogs& logs, DriveDescription description,
-                              ClocksApart treatment) {
-  const std::optional<ClockOffset> offset = offset_shown(drive.odometry, drive.fixes);
-  if (!offset) return drive;
-  const bool moves = treatment == ClocksApart::move && is_another_clock(drive, *offset);
+/// Returns what else may be the reason that an odometry seems late by less than two seconds; empty: nothing.
+std::string other_reason(const ClockOffset& offset, const PreparedDrive& drive) {
+  if (offset.late_s < 0 || offset.late_s > kOneClock_s || yaw_rate_is_late(drive.odometry, drive.fixes))
+    return "";
+  return fmt::format(
+      "; or 'speed_delay: {:.2f}' if its speed alone is late (OBD, CAN): the turns do not tell which",
+      offset.late_s);
+}
+
+/// Moves the stamps of the only odometry to another clock, or tells it.
+void tell_clock(const ClockOffset& offset, const DriveLogs& logs, DriveDescription& description,
+                ClocksApart treatment, PreparedDrive& drive) {
+  const bool moves = treatment == ClocksApart::move && is_another_clock(drive, offset);
   if (moves) {
     OdometryConfig& odometry = config_of(drive.odometry_name, description);
-    odometry.speed_delay_s += offset->late_s;
-    odometry.yaw_rate_delay_s += offset->late_s;
+    odometry.speed_delay_s += offset.late_s;
+    odometry.yaw_rate_delay_s += offset.late_s;
     drive = prepare_drive(logs, description);
   }
-  drive.report.warnings.push_back(
-      clock_warning("the odometry", *offset,
-                    moves ? "its stamps are moved by that; " + statement(*offset) : remedy(*offset)));
+  const std::string cure = moves ? "its stamps are moved by that; " + statement(offset)
+                                 : remedy(offset) + other_reason(offset, drive);
+  drive.report.warnings.push_back(clock_warning("the odometry", offset, cure));
+}
+
+/// Moves the readings of a quantity that is late alone, until it no longer is: what a late speed seems to contradict was
+/// mended by the fixes. @returns how late it was in all
+LateQuantity move_late_quantity(LateQuantity late, const DriveLogs& logs, DriveDescription& description,
+                                PreparedDrive& drive) {
+  constexpr int kMostMoves = 3;
+  double& delay_s = late.delay_in(config_of(drive.odometry_name, description));
+  delay_s = late.late_s;
+  drive = prepare_drive(logs, description);
+  for (int moves = 1; moves < kMostMoves; ++moves) {
+    const auto left = late_quantity_shown(drive.odometry, drive.fixes, drive.yaw_rate_at_rest);
+    if (!left || left->kind != late.kind) break;
+    late.late_s += left->late_s;
+    delay_s = late.late_s;
+    drive = prepare_drive(logs, description);
+  }
+  return late;
+}
+
+/// Treats a quantity that is late alone. What is stated of delays is left as it is: who states them may know more than
+/// the fixes do. @returns the odometry without it
+std::vector<OdometrySample> without_late_quantity(const LateQuantity& late, const DriveLogs& logs,
+                                                  DriveDescription& description, ClocksApart treatment,
+                                                  PreparedDrive& drive) {
+  const bool moves =
+      treatment == ClocksApart::move && !states_delays(config_of(drive.odometry_name, description));
+  if (moves) {
+    const LateQuantity moved = move_late_quantity(late, logs, description, drive);
+    drive.report.warnings.push_back(
+        late_quantity_warning("the odometry", moved,
+                              fmt::format("its readings are moved by that; state '{}: {:.2f}' for 'odometry'",
+                                          moved.key(), moved.late_s)));
+    return drive.odometry;
+  }
+  drive.report.tells_late_quantity = true;
+  drive.report.warnings.push_back(late_quantity_warning("the odometry", late, late.increase()));
+  return without_lateness(drive.odometry, late);
+}
+
+/// Compares speed and yaw rate of the only odometry with the fixes, and what is left with their clock. A quantity that
+/// is late alone looks like a clock that is wrong.
+PreparedDrive with_clock_told(PreparedDrive drive, const DriveLogs& logs, DriveDescription description,
+                              ClocksApart treatment) {
+  std::optional<ClockOffset> offset = offset_shown(drive.odometry, drive.fixes);
+  const bool is_far = offset && std::abs(offset->late_s) > kOneClock_s;
+  const auto late =
+      is_far ? std::nullopt : late_quantity_shown(drive.odometry, drive.fixes, drive.yaw_rate_at_rest);
+  if (late)
+    offset = offset_shown(without_late_quantity(*late, logs, description, treatment, drive), drive.fixes);
+  if (offset) tell_clock(*offset, logs, description, treatment, drive);
   return drive;
 }
 

@@ -17,7 +17,8 @@ enum class ClocksApart {
   tell   ///< a warning tells it: the stamps are those of a drive that goes on
 };
 
-/// prepare_drive(), and a warning if odometry and fixes fit at another offset of their clocks. Several odometries
+/// prepare_drive(), and a warning if odometry and fixes fit at another offset of their clocks. One of speed and yaw rate
+/// that is late alone is moved (ClocksApart::move, and no delay stated) or told (late_quantity.hpp). Several odometries
 /// are compared one by one, and those that the fixes contradict are left out (odometry_check.hpp).
 /// @param suspects odometries that were left out of an earlier part of the drive
 /// @throws InputError what prepare_drive throws; and if most fixes lie outside the odometry and their motion

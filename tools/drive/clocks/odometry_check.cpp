@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <waymark/tools/drive/clocks/lag_search.hpp>
+#include <waymark/tools/drive/clocks/late_quantity.hpp>
 #include <waymark/tools/drive/clocks/offset_names.hpp>
 #include <waymark/tools/drive/comparison/misreading.hpp>
 #include <waymark/tools/drive/comparison/plausibility.hpp>
@@ -162,6 +163,13 @@ Verdict verdict_on(const PreparedOdometry& source, const std::vector<Fix>& fixes
   const ClockVerdicts clocks = clock_verdicts(samples, compared);
   verdict.clock = is_far ? far_offset(samples, receivers_of(fixes)) : offset_in(clocks);
   verdict.covered = within(samples, fixes, verdict.clock ? verdict.clock->late_s : 0).size();
+  const auto late = is_far ? std::nullopt : late_quantity_shown(samples, compared, source.yaw_rate_at_rest);
+  if (late) {
+    verdict.contradicts = verdict.clock || late->late_s > kLateOdometry_s;
+    verdict.clock.reset();
+    verdict.sentences.push_back(late_quantity_warning(source.name, *late, late->increase()));
+    return verdict;
+  }
   if (verdict.clock) {
     verdict.contradicts = true;
     verdict.sentences.push_back(clock_warning(

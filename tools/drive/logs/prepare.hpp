@@ -76,6 +76,8 @@ struct PrepareReport {
   /// of odometries whose yaw rates no vehicle has, as if deg/s were read as rad/s: what to state, by name
   std::map<std::string, std::string> impossible_turns{};
   std::set<std::string> left_out;  ///< names of odometries that the fixes contradict
+  /// a warning says that one of speed and yaw rate is late, and nothing was moved: no offset of all stamps is right
+  bool tells_late_quantity = false;
   std::vector<std::string> corrupt_examples;
 };
 

@@ -223,6 +223,7 @@ double late_odometry(const std::vector<std::optional<TimeOffset>>& offsets, cons
   constexpr double kDeviations = 4;
   constexpr double kLeast_s = 0.02;
   if (!drive.relative.empty() || !drive.sensors.empty() || groups.empty()) return 0;
+  if (drive.report.tells_late_quantity) return 0;
   double late_s = std::numeric_limits<double>::infinity();
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const bool is_open = is_delay_open(groups[g], stated) && offsets[g] &&
