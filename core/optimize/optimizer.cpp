@@ -153,7 +153,8 @@ void Loop::prepare() {
   summary_.ordering = structure_.ordering();
   summary_.vertices = graph_.vertex_count();
   summary_.edges = graph_.edge_count();
-  summary_.unknowns = structure_.pattern().dimension();
+  summary_.unknowns =
+      structure_.pattern().dimension() - static_cast<std::int64_t>(structure_.held_coordinates().size());
   has_losses_ = has_losses(graph_);
   freedom_ =
       static_cast<double>(std::max<std::int64_t>(detail::count_equations(graph_) - summary_.unknowns, 0));
