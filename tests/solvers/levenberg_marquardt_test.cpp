@@ -1,11 +1,15 @@
 // Levenberg-Marquardt in a curved valley: damped steps crawl along it, full ones cross over it.
 #include <array>
+#include <cmath>
+#include <random>
 #include <string_view>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
 #include <waymark/core/optimize/optimizer.hpp>
 
+#include "support/problems.hpp"
 #include "support/registry.hpp"
 #include "support/scalar_types.hpp"
 
@@ -40,6 +44,42 @@ Graph valley(double sharpness) {
   return graph;
 }
 
+/// Streets that are driven row by row, there and back, with an edge to the neighbour in the row before. The
+/// initial guess is the odometry.
+Graph streets(int side, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  constexpr double kSigma_m = 0.1;
+  constexpr double kSigma_rad = 0.15;
+  const Eigen::Matrix3d information = pose_information(kSigma_m, kSigma_rad);
+  std::vector<Pose2<double>> truth;
+  for (int i = 0; i < side * side; ++i) {
+    const int row = i / side;
+    const int column = row % 2 == 0 ? i % side : side - 1 - i % side;
+    truth.emplace_back(column, row, std::uniform_real_distribution<double>(-3, 3)(random));
+  }
+  const auto measured = [&](std::size_t from, std::size_t to) {
+    return noisy(between(truth[from], truth[to]).vector(), kSigma_m, kSigma_rad, random);
+  };
+  Graph graph;
+  Pose2<double> reckoned = truth[0];
+  for (int i = 0; i < side * side; ++i) {
+    const auto z = i == 0 ? Eigen::Vector3d(0, 0, 0)
+                          : measured(static_cast<std::size_t>(i) - 1, static_cast<std::size_t>(i));
+    reckoned = compose(reckoned, constant_pose<double>(z));
+    graph.add_vertex<VertexSe2>(VertexId{i},
+                                {reckoned.position[0], reckoned.position[1], wrap_angle(reckoned.heading)});
+    if (i > 0) graph.add_edge(EdgeSe2{z}, {i - 1, i}, information);
+  }
+  for (int i = 0; i + side < side * side; ++i) {
+    const int below = 2 * side * (i / side + 1) - 1 - i;
+    if (below == i + 1) continue;
+    graph.add_edge(EdgeSe2{measured(static_cast<std::size_t>(i), static_cast<std::size_t>(below))},
+                   {i, below}, information);
+  }
+  graph.set_fixed(0, true);
+  return graph;
+}
+
 Summary run(Graph& graph) {
   OptimizerOptions options;
   options.max_iterations = 2000;
@@ -61,6 +101,18 @@ TEST_CASE("levenberg_marquardt: in a curved valley full steps may climb first, a
     CHECK(graph.value(0)[0] == Approx(1).margin(1e-6));
     CHECK(graph.value(1)[0] == Approx(1).margin(1e-6));
     CHECK(summary.iterations < 60);
+  }
+}
+
+TEST_CASE("levenberg_marquardt: a graph that is bent as a whole is straightened, and not folded by damping") {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    INFO("seed " << seed);
+    Graph graph = streets(60, seed);
+    const Summary summary = run(graph);
+    CHECK(summary.converged());
+    // chi2 of the minimum is chi-square distributed.
+    const double freedom = 3.0 * static_cast<double>(graph.edge_count() + 1 - graph.vertex_count());
+    CHECK(summary.final_chi2 < freedom + 5 * std::sqrt(2 * freedom));
   }
 }
 
