@@ -96,7 +96,7 @@ class LevenbergMarquardt final : public Algorithm {
     if (!step.full_newton) {
       grow();
     } else if (trial_steps_ > 0) {
-      trial_steps_ = kTrialSteps;  // its end was not finite
+      trial_steps_ = longest_trial();  // its end was not finite
     } else {
       look_later();
     }
@@ -109,13 +109,14 @@ class LevenbergMarquardt final : public Algorithm {
   static constexpr double kCrawl = 0.5;      // a crawling step promises this share of the one before it
   static constexpr int kPatience = 4;        // crawling steps in a row before a full step is tried
   static constexpr int kLongestPatience = 64;
-  static constexpr int kTrialSteps = 4;  // full steps that may lead below the chi2 before them
+  static constexpr int kTrialSteps = 4;       // full steps that may lead below the chi2 before them
+  static constexpr int kFirstTrialSteps = 8;  // the same from the first values, which may be far off
 
   /// Proposes the next full step of a trial, or ends the trial where it cannot succeed any more.
   ProposalStatus propose_on_trial(const NormalEquations& equations, LinearSolver& solver, double tolerance,
                                   Step& step) {
     double slope = 0;
-    const bool solved = trial_steps_ < kTrialSteps &&
+    const bool solved = trial_steps_ < longest_trial() &&
                         solve_step(equations, solver, {}, scratch_, step.delta, slope) == FactorStatus::ok;
     if (!solved || -slope <= tolerance) {  // the latter: a minimum above the values of before
       end_trial();
@@ -126,6 +127,8 @@ class LevenbergMarquardt final : public Algorithm {
     step.control = 0;
     return ProposalStatus::ok;
   }
+
+  [[nodiscard]] int longest_trial() const { return is_first_ ? kFirstTrialSteps : kTrialSteps; }
 
   void end_trial() {
     trial_steps_ = 0;
