@@ -100,6 +100,8 @@ void Graduation::find_candidates() {
       (options_.trusted(graph_, {b, e}) ? trusted_ : candidates_).push_back({b, e});
     }
   }
+  result_.candidates = candidates_.size();
+  if (!options_.doubts_trusted) return;
   parallels_ = contradicting_parallels(graph_, trusted_, algorithm_, solver_, options_.inlier_probability);
   for (const std::vector<EdgePlace>& group : parallels_) move_to_candidates(group);
   result_.candidates = candidates_.size();
@@ -110,7 +112,6 @@ void Graduation::move_to_candidates(const std::vector<EdgePlace>& edges) {
                 [&](EdgePlace place) { return std::binary_search(edges.begin(), edges.end(), place); });
   candidates_.insert(candidates_.end(), edges.begin(), edges.end());
   std::sort(candidates_.begin(), candidates_.end());
-  result_.candidates = candidates_.size();
 }
 
 double Graduation::bound(EdgePlace place) const {
@@ -353,9 +354,10 @@ GraduationResult Graduation::run() {
     if (!parallels_.empty()) search_from_trusted(false);
   }
   // 3. Doubt what was trusted: single edges, and all of them if they cost many of the others.
-  for (int round = 0; round < kMaxDoubts && suspicious && doubt_trusted(); ++round) search();
+  for (int round = 0; round < kMaxDoubts && suspicious && options_.doubts_trusted && doubt_trusted(); ++round)
+    search();
   const auto many = static_cast<std::size_t>(kManyOutliers * static_cast<double>(candidates_.size()));
-  if (!interrupted_ && suspicious && best_.outliers.size() > many) {
+  if (!interrupted_ && options_.doubts_trusted && suspicious && best_.outliers.size() > many) {
     graph_.set_values(of_all_edges);
     std::vector<EdgePlace> all = trusted_;
     std::erase_if(all, [&](EdgePlace place) {

@@ -40,8 +40,10 @@ namespace WAYMARK_EXPORT waymark {
 struct GraduationOptions {
   Loss loss;  ///< loss of the candidates at its final width. Default: Geman-McClure, 1
   TrustRule trusted = &is_odometry_edge;  ///< all others are candidates from the beginning
-  double factor = 1.4;                    ///< divisor of the stretch per round, > 1
-  int inner_iterations = 2;               ///< steps per round, >= 1
+  /// trusted edges may become candidates, as above; false: they stay, and those that are contradicted are told only
+  bool doubts_trusted = true;
+  double factor = 1.4;       ///< divisor of the stretch per round, > 1
+  int inner_iterations = 2;  ///< steps per round, >= 1
   /// probability of the quantile for the verdict, in (0, 1)
   double inlier_probability = 0.9999;
   /// for the last optimisation; observer and cancel token are used by all

@@ -95,9 +95,10 @@ void add_robust_options(CLI::App& command, RobustChoice& choice) {
       ->check(one_of("method", {"none", "gnc"}))
       ->capture_default_str();
   command
-      .add_option("--trusted", choice.trusted,
-                  "Edges that have no loss and are outliers only if the others contradict them: odometry "
-                  "(between consecutive ids), none, or all edges of a TAG")
+      .add_option(
+          "--trusted", choice.trusted,
+          "Edges that have no loss and are no outliers: odometry (between consecutive ids, unless the "
+          "others contradict it), none, or all edges of a TAG")
       ->type_name("odometry|none|TAG")
       ->capture_default_str();
   command
@@ -140,6 +141,7 @@ Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& r
   GraduationOptions options;
   if (!choice.losses.empty()) options.loss = parse_loss(choice.losses.front(), registry).loss;
   options.trusted = trust_rule(choice);
+  options.doubts_trusted = choice.trusted == "odometry";  // a guess, where a tag is the user's word
   return [options, &found](Graph& graph, Algorithm& algorithm, LinearSolver& solver,
                            const OptimizerOptions& optimizer) mutable {
     options.optimizer = optimizer;
