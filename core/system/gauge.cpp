@@ -121,6 +121,13 @@ std::string words_for_coordinates(const Graph& graph, const Judged& judged, Vert
          (count == 1 ? " is held at its present value" : " are held at their present values");
 }
 
+/// Tells whether a component is a drive, whose heading is a result and no convention.
+bool has_stamps(const Graph& graph, const Components& components, std::size_t c) {
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v)
+    if (components.of[at(v)] == static_cast<std::int32_t>(c) && graph.stamp(v)) return true;
+  return false;
+}
+
 /// Holds as many coordinates of one vertex as there are unseen motions.
 /// @return false where no vertex has them
 bool hold_coordinates(const Graph& graph, const Components& components, std::size_t c, const Judged& judged,
@@ -139,9 +146,10 @@ bool hold_coordinates(const Graph& graph, const Components& components, std::siz
 /// @throws InputError for one whose solution is not determined whatever is held
 [[noreturn]] void refuse(const Graph& graph, const Judged& judged) {
   if (judged.rank > 0)
-    throw InputError(anchored_in_part(graph, judged) +
-                     ", so the solution is not determined (typical: fixes at one place, a point seen in one "
-                     "direction); add fixes at another place or a heading, or FIX one vertex");
+    throw InputError(
+        anchored_in_part(graph, judged) +
+        ", so the solution is not determined (typical: a drive with a single fix or fixes at one place, a point seen in one "
+        "direction); add fixes at another place or a heading, or FIX one vertex");
   throw InputError("nothing anchors vertex " + to_string(graph.id(judged.first)) + " and the " +
                    std::to_string(judged.count - 1) +
                    " vertices joined to it, which are all points: with one of them FIXed they still turn "
@@ -172,7 +180,7 @@ Gauge find_gauge(const Graph& graph, PartlyAnchored partly) {
     if (judged.is_anchored()) continue;
     if (partly == PartlyAnchored::hold_coordinates) {
       // Only motions that stay unseen wherever the vertices go are no part of the solution.
-      const bool is_gauge = judged.motions == 3 && !judged.is_special;
+      const bool is_gauge = judged.motions == 3 && !judged.is_special && !has_stamps(graph, components, c);
       if (judged.rank > 0 && is_gauge && hold_coordinates(graph, components, c, judged, gauge)) continue;
       if (judged.rank > 0 || judged.would_turn()) refuse(graph, judged);
     }

@@ -37,7 +37,7 @@ enum class PartlyAnchored {
 ///   with a heading are held as there are motions left: its heading beside a single fix, its place beside a single
 ///   heading. This costs nothing at the minimum, and a message says it.
 /// @throws InputError for a component that is anchored in part only because of its present values (a parked car with
-/// fixes, poses that all stand at one place), for a point that is seen in one direction only, and for one that turns
+/// fixes, poses that all stand at one place), for one with stamps (the heading of a drive is a result), for a point that is seen in one direction only, and for one that turns
 /// about any vertex that is held (points with distances between them); it names a vertex and the missing
 /// measurement. With `hold_vertex` all of these are held
 [[nodiscard]] Gauge find_gauge(const Graph& graph, PartlyAnchored partly = PartlyAnchored::hold_coordinates);

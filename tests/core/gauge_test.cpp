@@ -137,6 +137,16 @@ TEST_CASE("gauge rank 2: beside a single fix a heading is held, and the message 
                                     Contains("heading of vertex 40 is held at its present value"));
 }
 
+TEST_CASE("gauge rank 2: a drive with a single fix is refused, because its heading is a result") {
+  Graph graph;
+  const auto chain = add_chain(graph, 40, 5);
+  for (const VertexIndex v : chain) graph.set_stamp(v, Stamp{1'000'000'000LL * v});
+  add_fix(graph, add_fixed_origin(graph, 100), chain[2]);
+  CHECK_THROWS_AS(find_gauge(graph), InputError);
+  CHECK_THROWS_WITH(find_gauge(graph), Contains("vertex 40") && Contains("2 of 3") && Contains("FIX") &&
+                                           Contains("another place"));
+}
+
 TEST_CASE("gauge rank 2: a single pose with a single fix keeps its heading") {
   Graph graph;
   const VertexIndex pose = graph.add_vertex<VertexSe2>(VertexId{3}, {4, 5, 0.5});
