@@ -15,12 +15,14 @@
 namespace WAYMARK_EXPORT waymark {
 
 /// The second vertex of an edge as the first one sees it, in the axes of the first one: at sensor +
-/// way, or, without a range, anywhere on the ray from the sensor in the direction of `way`. The error
-/// of the edge is zero there. Metres.
+/// way, or, without a range, anywhere on the ray from the sensor in the direction of `way`, or, without a
+/// bearing, anywhere on the circle about the sensor whose radius is the length of `way`. The error of the
+/// edge is zero there, wherever the first vertex is (`waymark check --derivatives` tries it). Metres.
 struct Sight {
   Eigen::Vector2d sensor = Eigen::Vector2d::Zero();
   Eigen::Vector2d way = Eigen::Vector2d::Zero();
   bool has_range = true;
+  bool has_bearing = true;
 
   /// A point whose place in the axes of the first vertex was measured.
   [[nodiscard]] static Sight of_place(const Eigen::Vector2d& place) { return {.way = place}; }
@@ -39,7 +41,17 @@ struct Sight {
     return sight;
   }
 
-  /// Returns the measured place, or a point of the ray.
+  /// A point whose range alone was measured.
+  [[nodiscard]] static Sight of_range_alone(double range,
+                                            const Eigen::Vector2d& sensor = Eigen::Vector2d::Zero()) {
+    Sight sight = of_range(range, 0, sensor);
+    sight.has_bearing = false;
+    return sight;
+  }
+
+  /// Tells whether one sight is enough to place the point.
+  [[nodiscard]] bool has_place() const { return has_range && has_bearing; }
+  /// Returns the measured place, or a point of the ray or circle.
   [[nodiscard]] Eigen::Vector2d place() const { return sensor + way; }
 };
 

@@ -110,7 +110,7 @@ Evidence evidence_at(const std::vector<double>& values, std::span<const double> 
   Evidence result;
   result.chi2 = equations.linearize(values, weights);
   result.log_det_hessian = cholesky.factorize(equations.hessian()) == FactorStatus::ok
-                               ? cholesky.log_determinant()
+                               ? cholesky.log_determinant() - equations.log_of_held_information()
                                : std::numeric_limits<double>::infinity();
   result.log_det_information = log_det_information(graph);
   return result;

@@ -26,7 +26,7 @@
 /// - `void prepare();` is called once after the fields are set. It stores what depends only on the
 ///   measurement.
 /// - `Sight sight() const;` says where the second vertex, a point, is seen from the first one, a pose
-///   (core/base/sight.hpp). Initial guesses place points by it.
+///   (core/base/sight.hpp). Initial guesses place points by it; the error must be zero there (tested).
 ///
 /// An edge is a plain value that a graph copies. error(), linearize(), prepare() and sight() must not keep
 /// state elsewhere, because several threads call them at the same time.

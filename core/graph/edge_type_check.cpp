@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/graph/detail/sight_check.hpp>
 #include <waymark/core/graph/edge_type_check.hpp>
 #include <waymark/core/system/normal_equations.hpp>
 
@@ -192,6 +193,7 @@ Graph single_edge(const TypeRegistry& registry, const EdgeType& type, const Edge
 
 EdgeTypeCheck check_edge_type(const TypeRegistry& registry, const EdgeType& type, int repetitions) {
   EdgeTypeCheck result;
+  result.sight_error = detail::sight_error_of(registry, type);
   for (const EdgeScenario& scenario : edge_scenarios()) {
     std::mt19937_64 random(11);
     for (int i = 0; i < repetitions; ++i) {

@@ -36,6 +36,9 @@ struct EdgeScenario {
 /// A larger difference of normal equations is a wrong promise: kRelative, or carry() of the vertices.
 inline constexpr double kNormalTolerance = 1e-9;
 
+/// A larger error where a sight says that it is zero is a wrong sight.
+inline constexpr double kSightTolerance = 1e-6;
+
 /// The largest difference between the Jacobians of a type and differences of its error, over
 /// all scenarios.
 struct EdgeTypeCheck {
@@ -48,10 +51,12 @@ struct EdgeTypeCheck {
   /// The largest difference between the normal equations of the edge and those of its Jacobians, relative
   /// to their size. A type that says kRelative and is not relative has wrong ones.
   double normal_error = 0;
+  /// The largest error of the edge where its sight says that it is zero (base/sight.hpp); 0 without a sight.
+  double sight_error = 0;
 
   [[nodiscard]] bool sound() const {
     return worst.error <= kGradientTolerance && not_finite == 0 && judged > 0 &&
-           normal_error <= kNormalTolerance;
+           normal_error <= kNormalTolerance && sight_error <= kSightTolerance;
   }
 };
 

@@ -83,6 +83,10 @@ class Loop {
  private:
   void prepare();
   bool converged_at_gradient();
+  /// Tells whether chi2 was lower before, by more than the tolerance.
+  bool is_above_best() const {
+    return chi2_ - best_chi2_ > options_.decrement_tolerance * (unit_ + best_chi2_);
+  }
   bool step_once();
   bool converges_slowly() const;
   bool step_with_whole_curvature();
@@ -95,6 +99,7 @@ class Loop {
   double linearize(const std::vector<double>& values);
   void accept(double trial_chi2);
   void retreat();
+  bool goes_back_from_above();
   void finish_without_step();
   std::string singular_message();
   /// Tells whether the last step was damped, which hides an unknown that the edges do not determine.
@@ -153,7 +158,8 @@ void Loop::prepare() {
   summary_.ordering = structure_.ordering();
   summary_.vertices = graph_.vertex_count();
   summary_.edges = graph_.edge_count();
-  summary_.unknowns = structure_.pattern().dimension();
+  summary_.unknowns =
+      structure_.pattern().dimension() - static_cast<std::int64_t>(structure_.held_coordinates().size());
   has_losses_ = has_losses(graph_);
   freedom_ =
       static_cast<double>(std::max<std::int64_t>(detail::count_equations(graph_) - summary_.unknowns, 0));
@@ -395,6 +401,16 @@ void Loop::retreat() {
   last_accepted_ = false;
 }
 
+/// Steps on trial that diverge end where all is flat. The algorithm decides whether it goes back from there.
+bool Loop::goes_back_from_above() {
+  if (!is_above_best()) return false;
+  if (algorithm_.propose(equations_, solver_, decrement_bound(), step_) != ProposalStatus::retreat)
+    return false;
+  retreat();
+  done_ = false;
+  return true;
+}
+
 /// A graph whose Jacobians are NaN may look as if nothing were to do.
 bool Loop::not_finite_without_unknowns() const {
   return summary_.unknowns == 0 && find_not_finite(graph_).has_value();
@@ -435,7 +451,7 @@ Summary Loop::run() {
   algorithm_.reset();
   bool moved = true;
   while (!done_) {
-    if (moved && converged_at_gradient()) break;
+    if (moved && converged_at_gradient() && !goes_back_from_above()) break;
     if (options_.cancel != nullptr && options_.cancel->load()) {
       finish(Termination::interrupted, text("interrupted after ", summary_.iterations, " iterations"));
     } else if (summary_.iterations >= options_.max_iterations) {
@@ -447,7 +463,7 @@ Summary Loop::run() {
   }
   // Full steps that went uphill may end at a minimum above earlier values. The values that are then
   // returned are no minimum.
-  if (summary_.converged() && chi2_ - best_chi2_ > options_.decrement_tolerance * (unit_ + best_chi2_)) {
+  if (summary_.converged() && is_above_best()) {
     finish(Termination::stalled, text("the steps ended at a stationary point with chi2 ", chi2_,
                                       "; the lowest chi2 on the way, ", best_chi2_, ", is kept"));
   }

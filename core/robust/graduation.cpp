@@ -3,8 +3,9 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <sstream>
+#include <span>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/robust/chi_square.hpp>
 #include <waymark/core/robust/graduation.hpp>
@@ -18,6 +19,10 @@ namespace {
 constexpr double kFirstVerdict = 16;
 /// Steps towards the minimum of all edges.
 constexpr int kFirstIterations = 50;
+/// Times that trusted edges are doubted, and the search is repeated without them.
+constexpr int kMaxDoubts = 10;
+/// If more than this share of the candidates are outliers, they may be right, and a trusted edge wrong.
+constexpr double kManyOutliers = 0.2;
 /// Steps towards the minimum with the loss before a verdict.
 constexpr int kConverge = 30;
 
@@ -50,6 +55,13 @@ class Graduation {
 
  private:
   void find_candidates();
+  void move_to_candidates(const std::vector<EdgePlace>& edges);
+  void search();
+  void search_from_trusted(bool first_of_parallels);
+  std::vector<EdgePlace> contradicted(std::span<const EdgePlace> trusted) const;
+  std::vector<EdgePlace> kept_and_trusted() const;
+  bool doubt_trusted();
+  bool is_implausible() const;
   double bound(EdgePlace place) const;
   std::vector<EdgePlace> beyond_bound() const;
   std::vector<EdgePlace> inside(const Verdict& verdict) const;
@@ -59,7 +71,7 @@ class Graduation {
   void judge(std::vector<EdgePlace> outliers);
   void cross_examine();
   Verdict optimize_without(std::vector<EdgePlace> outliers);
-  std::vector<EdgePlace> accused(const Verdict& verdict);
+  std::vector<EdgePlace> most_accused(std::span<const EdgePlace> edges, const Verdict& verdict);
   std::vector<EdgePlace> still_out(const Verdict& verdict, std::vector<EdgePlace>& returned);
   Summary count(Summary summary) {
     result_.iterations += summary.iterations;
@@ -73,7 +85,9 @@ class Graduation {
   LinearSolver& solver_;
   const GraduationOptions& options_;
   std::vector<EdgePlace> candidates_;
-  std::vector<std::vector<EdgePlace>> judged_;  // splits whose minimum is known
+  std::vector<EdgePlace> trusted_;                 // the other ones
+  std::vector<std::vector<EdgePlace>> parallels_;  // groups of candidates that would be trusted alone
+  std::vector<std::vector<EdgePlace>> judged_;     // splits whose minimum is known
   Verdict best_;
   bool interrupted_ = false;
   GraduationResult result_;
@@ -83,10 +97,21 @@ void Graduation::find_candidates() {
   for (std::size_t b = 0; b < graph_.batch_count(); ++b) {
     result_.weights.emplace_back(graph_.batch(b).size(), 1.0);
     for (std::size_t e = 0; e < graph_.batch(b).size(); ++e) {
-      if (!options_.trusted(graph_, {b, e})) candidates_.push_back({b, e});
+      (options_.trusted(graph_, {b, e}) ? trusted_ : candidates_).push_back({b, e});
     }
   }
   result_.candidates = candidates_.size();
+  if (!options_.doubts_trusted) return;
+  parallels_ = contradicting_parallels(graph_, trusted_, algorithm_, solver_, options_.inlier_probability);
+  for (const std::vector<EdgePlace>& group : parallels_) move_to_candidates(group);
+  result_.candidates = candidates_.size();
+}
+
+void Graduation::move_to_candidates(const std::vector<EdgePlace>& edges) {
+  std::erase_if(trusted_,
+                [&](EdgePlace place) { return std::binary_search(edges.begin(), edges.end(), place); });
+  candidates_.insert(candidates_.end(), edges.begin(), edges.end());
+  std::sort(candidates_.begin(), candidates_.end());
 }
 
 double Graduation::bound(EdgePlace place) const {
@@ -131,6 +156,22 @@ void Graduation::attach_losses() {
       candidate += doubted;
     }
   }
+}
+
+// Narrows the loss from the present values of the graph. The cheapest split on the way counts.
+void Graduation::search() {
+  working_ = graph_;
+  narrow();
+  cross_examine();
+}
+
+// Searches from the minimum of the trusted edges, joined by one edge of each group of parallel ones.
+void Graduation::search_from_trusted(bool first_of_parallels) {
+  std::vector<EdgePlace> out = candidates_;
+  for (const std::vector<EdgePlace>& group : parallels_)
+    std::erase(out, first_of_parallels ? group.front() : group.back());
+  judge(std::move(out));
+  search();
 }
 
 void Graduation::narrow() {
@@ -196,11 +237,10 @@ std::vector<EdgePlace> Graduation::still_out(const Verdict& verdict, std::vector
   return out;
 }
 
-// Returns the edges inside that all others contradict: without such an edge the minimum would fall
-// by more than it costs outside. A false edge makes good neighbours look bad, so only those close
+// Returns those of some edges inside that all others contradict: without such an edge the minimum would
+// fall by more than it costs outside. A false edge makes good neighbours look bad, so only those close
 // to the worst are returned.
-std::vector<EdgePlace> Graduation::accused(const Verdict& verdict) {
-  const std::vector<EdgePlace> members = inside(verdict);
+std::vector<EdgePlace> Graduation::most_accused(std::span<const EdgePlace> members, const Verdict& verdict) {
   const Graph kept = without_edges(graph_, verdict.outliers);
   const std::vector<double> against = innovations(graph_, members, Membership::inside, kept, solver_);
   const double worst = against.empty() ? 0 : *std::max_element(against.begin(), against.end());
@@ -236,7 +276,7 @@ void Graduation::cross_examine() {
   constexpr int kMaxRounds = 20;
   for (int round = 0; round < kMaxRounds && !interrupted_; ++round) {
     graph_.set_values(best_.values);
-    std::vector<EdgePlace> outliers = accused(best_);
+    std::vector<EdgePlace> outliers = most_accused(inside(best_), best_);
     if (outliers.empty()) return;
     outliers.insert(outliers.end(), best_.outliers.begin(), best_.outliers.end());
     std::sort(outliers.begin(), outliers.end());
@@ -244,6 +284,55 @@ void Graduation::cross_examine() {
     judge(std::move(outliers));
     if (!(best_.cost < before)) return;
   }
+}
+
+// Returns the trusted edges whose error at the best split is beyond their bound. Stated noise is often smaller
+// than the true one; the median of the trusted errors tells by how much.
+std::vector<EdgePlace> Graduation::contradicted(std::span<const EdgePlace> trusted) const {
+  std::vector<double> shares;  // of the bound
+  for (const EdgePlace place : trusted) shares.push_back(squared_error(graph_, place) / bound(place));
+  if (shares.empty()) return {};
+  const double usual = chi_square_quantile(0.5, 3) / chi_square_quantile(options_.inlier_probability, 3);
+  const double limit = std::max(1.0, upper_median(shares) / usual);
+  std::vector<EdgePlace> result;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    if (!(shares[i] <= limit)) result.push_back(trusted[i]);
+  }
+  return result;
+}
+
+std::vector<EdgePlace> Graduation::kept_and_trusted() const {
+  std::vector<EdgePlace> result = trusted_;
+  for (const EdgePlace place : inside(best_)) {
+    if (options_.trusted(graph_, place)) result.push_back(place);
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+// Makes candidates of the trusted edges that the best split contradicts most.
+// @return there is a cheaper split now
+bool Graduation::doubt_trusted() {
+  graph_.set_values(best_.values);
+  std::vector<EdgePlace> outliers = most_accused(contradicted(trusted_), best_);
+  if (outliers.empty() || interrupted_) return false;
+  move_to_candidates(outliers);
+  outliers.insert(outliers.end(), best_.outliers.begin(), best_.outliers.end());
+  std::sort(outliers.begin(), outliers.end());
+  const double before = best_.cost;
+  judge(std::move(outliers));
+  graph_.set_values(best_.values);
+  return best_.cost < before;
+}
+
+// Tells whether the kept edges contradict each other, by chi2 of the best split.
+bool Graduation::is_implausible() const {
+  std::int64_t freedom = -best_.summary.unknowns;
+  for (const EdgePlace place : trusted_) freedom += graph_.batch(place.batch).error_dimension(place.edge);
+  for (const EdgePlace place : inside(best_))
+    freedom += graph_.batch(place.batch).error_dimension(place.edge);
+  return freedom > 0 && best_.summary.final_chi2 >
+                            chi_square_quantile(options_.inlier_probability, static_cast<int>(freedom));
 }
 
 GraduationResult Graduation::run() {
@@ -255,19 +344,36 @@ GraduationResult Graduation::run() {
   OptimizerOptions first = options_.optimizer;
   first.max_iterations = std::min(kFirstIterations, first.max_iterations);
   (void)count(optimize(graph_, algorithm_, solver_, first));
-  const bool suspicious = !beyond_bound().empty();
-  working_.set_values(graph_.values());
-  if (!interrupted_ && suspicious) {
-    // 2. Narrow the loss from there. The cheapest split on the way counts.
-    narrow();
-    cross_examine();
-  }
+  const std::vector<double> of_all_edges = graph_.values();
+  const bool suspicious = !beyond_bound().empty() || !contradicted(trusted_).empty();
+  // 2. Narrow the loss from there, and if that does not end well, from the minimum of what is trusted.
+  if (!interrupted_ && suspicious) search();
   if (best_.values.empty()) best_ = optimize_without({});
-  graph_.set_values(std::move(best_.values));
+  if (!interrupted_ && suspicious && is_implausible()) {
+    search_from_trusted(true);
+    if (!parallels_.empty()) search_from_trusted(false);
+  }
+  // 3. Doubt what was trusted: single edges, and all of them if they cost many of the others.
+  for (int round = 0; round < kMaxDoubts && suspicious && options_.doubts_trusted && doubt_trusted(); ++round)
+    search();
+  const auto many = static_cast<std::size_t>(kManyOutliers * static_cast<double>(candidates_.size()));
+  if (!interrupted_ && options_.doubts_trusted && suspicious && best_.outliers.size() > many) {
+    graph_.set_values(of_all_edges);
+    std::vector<EdgePlace> all = trusted_;
+    std::erase_if(all, [&](EdgePlace place) {
+      return graph_.edge_type(place.batch).arity == EdgeType::kRuntimeArity;  // many edges in one
+    });
+    move_to_candidates(all);
+    search();
+  }
+  graph_.set_values(best_.values);
   for (const EdgePlace place : candidates_) {
     result_.weights[place.batch][place.edge] = options_.loss.at(squared_error(graph_, place)).weight;
   }
+  result_.contradicted = contradicted(kept_and_trusted());
   result_.outliers = std::move(best_.outliers);
+  std::copy_if(result_.outliers.begin(), result_.outliers.end(), std::back_inserter(result_.distrusted),
+               [&](EdgePlace place) { return options_.trusted(graph_, place); });
   result_.summary = std::move(best_.summary);
   if (interrupted_) {
     result_.summary.termination = Termination::interrupted;
@@ -278,50 +384,6 @@ GraduationResult Graduation::run() {
 }
 
 }  // namespace
-
-namespace {
-
-bool follow_each_other(VertexId a, VertexId b) {
-  return to_number(a) + 1 == to_number(b) || to_number(b) + 1 == to_number(a);
-}
-
-}  // namespace
-
-bool is_odometry_edge(const Graph& graph, EdgePlace place) {
-  if (graph.edge_type(place.batch).arity == EdgeType::kRuntimeArity) return true;
-  const EdgeBatchBase& batch = graph.batch(place.batch);
-  std::vector<VertexIndex> placed;
-  for (const VertexIndex v : batch.vertices(place.edge)) {
-    if (graph.vertex_type(v).position != nullptr) placed.push_back(v);
-  }
-  if (placed.size() != 2 || graph.fixed(placed[0]) || graph.fixed(placed[1])) return false;
-  const VertexType& type = graph.vertex_type(placed[0]);
-  return type.tag == graph.vertex_type(placed[1]).tag &&
-         batch.error_dimension(place.edge) >= type.tangent_size &&
-         follow_each_other(graph.id(placed[0]), graph.id(placed[1]));
-}
-
-GraduationOptions::GraduationOptions() {
-  for (const LossType& type : builtin_losses()) {
-    if (type.name == "geman_mcclure") loss = Loss{type.name, type.evaluate, 1};
-  }
-}
-
-void GraduationOptions::check() const {
-  const auto require = [](bool valid, const char* field, double value, const char* rule) {
-    if (valid) return;
-    std::ostringstream message;
-    message.imbue(std::locale::classic());
-    message << "graduation option " << field << " = " << value << ": must be " << rule;
-    throw UsageError(message.str());
-  };
-  require(loss.evaluate != nullptr && loss.scale > 0, "loss.scale", loss.scale, "> 0, of a known loss");
-  require(factor > 1, "factor", factor, "> 1");
-  require(inner_iterations >= 1, "inner_iterations", inner_iterations, ">= 1");
-  require(inlier_probability > 0 && inlier_probability < 1, "inlier_probability", inlier_probability,
-          "in (0, 1)");
-  optimizer.check();
-}
 
 GraduationResult graduate(Graph& graph, Algorithm& algorithm, LinearSolver& solver,
                           const GraduationOptions& options) {

@@ -17,32 +17,33 @@
 /// noise is. So there are verdicts at stretch 16, 4 and 1 of the last width, and the one with the
 /// lowest cost counts.
 ///
+/// Trust is no certainty. Trusted edges that contradict each other between the same two places are
+/// candidates from the beginning. So are those that the best split contradicts (their error is beyond
+/// the quantile, widened if the errors of the trusted edges are larger than stated as a whole), if it
+/// becomes cheaper without them. If the kept edges still do not fit, the search is repeated from the
+/// minimum of the trusted edges alone. If more than a fifth of the candidates are outliers, it is repeated
+/// without any trust: a wrong edge that alone joins two parts contradicts nothing, once all right ones
+/// between them are out. The cheapest split of all searches counts.
+///
 /// Ownership and threads are those of optimize(). The calling thread calls the trust rule.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include <waymark/core/base/export.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/robust/edge_selection.hpp>
+#include <waymark/core/robust/trust.hpp>
 
 namespace WAYMARK_EXPORT waymark {
 
-/// Tells whether an edge is never an outlier.
-using TrustRule = std::function<bool(const Graph&, EdgePlace)>;
-
-/// Recognises odometry. The edge joins two free vertices of one type that have a place in the
-/// plane and consecutive ids, and its error determines one from the other (it has as many
-/// dimensions as the tangent). Priors of run-time arity are trusted too, because marginalisation
-/// made them from many edges.
-[[nodiscard]] bool is_odometry_edge(const Graph& graph, EdgePlace place);
-
 struct GraduationOptions {
   Loss loss;  ///< loss of the candidates at its final width. Default: Geman-McClure, 1
-  TrustRule trusted = &is_odometry_edge;  ///< all others are candidates
-  double factor = 1.4;                    ///< divisor of the stretch per round, > 1
-  int inner_iterations = 2;               ///< steps per round, >= 1
+  TrustRule trusted = &is_odometry_edge;  ///< all others are candidates from the beginning
+  /// trusted edges may become candidates, as above; false: they stay, and those that are contradicted are told only
+  bool doubts_trusted = true;
+  double factor = 1.4;       ///< divisor of the stretch per round, > 1
+  int inner_iterations = 2;  ///< steps per round, >= 1
   /// probability of the quantile for the verdict, in (0, 1)
   double inlier_probability = 0.9999;
   /// for the last optimisation; observer and cancel token are used by all
@@ -54,8 +55,11 @@ struct GraduationOptions {
 };
 
 struct GraduationResult {
-  Summary summary;                  ///< of the last optimisation, over all edges but the outliers
-  std::vector<EdgePlace> outliers;  ///< in the order of the graph
+  Summary summary;                    ///< of the last optimisation, over all edges but the outliers
+  std::vector<EdgePlace> outliers;    ///< in the order of the graph
+  std::vector<EdgePlace> distrusted;  ///< those of them that the rule trusts
+  std::vector<EdgePlace>
+      contradicted;  ///< kept edges that the rule trusts and the other kept ones contradict
   /// Per batch and edge: the weight from the loss at its final width; 1 for trusted edges.
   std::vector<std::vector<double>> weights;
   std::size_t candidates = 0;

@@ -13,15 +13,16 @@ namespace WAYMARK_EXPORT waymark {
 
 /// The vertices that are held so that the problem is determined, and the messages for the user.
 struct Gauge {
-  /// per vertex: it keeps its value (fixed vertices of the graph are not counted)
+  /// per vertex, a mark of held_marks.hpp: it keeps its value, or some coordinates of it (fixed vertices of the graph
+  /// are not counted)
   std::vector<char> held;
   std::vector<std::string> messages;  ///< one sentence per component that was held
 };
 
 /// What to do with a component that is anchored in part.
 enum class PartlyAnchored {
-  refuse,  ///< throw
-  hold     ///< hold its first vertex, with a message: more measurements will come
+  hold_coordinates,  ///< hold as many coordinates of a vertex as there are motions that no edge sees
+  hold_vertex        ///< hold its first vertex as a whole: more measurements will come
 };
 
 /// Examines every component of free vertices joined by edges. Its rigid-motion information is M =
@@ -31,10 +32,14 @@ enum class PartlyAnchored {
 /// - 0: nothing anchors the component. Its first vertex that has a heading is held, as usual in the field, and a
 ///   message says so.
 /// - all: the component is anchored, and nothing is held.
-/// - 1, or 2 of 3: it is anchored in part (one fix; a parked car), if that is also the rank of the directions in which
-///   the edges are moved. What is known to 1e4 m only is faint in M beside 1e-6 rad, but known.
-/// @throws InputError for a component that is anchored in part, or that turns about any vertex that is held (points
-/// with distances between them); it names a vertex and the missing measurement. With `hold` both are held
-[[nodiscard]] Gauge find_gauge(const Graph& graph, PartlyAnchored partly = PartlyAnchored::refuse);
+/// - 1 or 2 of 3: it is anchored in part, if that is also the rank of the directions in which the edges are moved
+///   (what is known to 1e4 m only is faint in M beside 1e-6 rad, but known). As many coordinates of its first vertex
+///   with a heading are held as there are motions left: its heading beside a single fix, its place beside a single
+///   heading. This costs nothing at the minimum, and a message says it.
+/// @throws InputError for a component that is anchored in part only because of its present values (a parked car with
+/// fixes, poses that all stand at one place), for one with stamps (the heading of a drive is a result), for a point that is seen in one direction only, and for one that turns
+/// about any vertex that is held (points with distances between them); it names a vertex and the missing
+/// measurement. With `hold_vertex` all of these are held
+[[nodiscard]] Gauge find_gauge(const Graph& graph, PartlyAnchored partly = PartlyAnchored::hold_coordinates);
 
 }  // namespace waymark

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include <waymark/core/base/detail/index.hpp>
@@ -9,6 +10,9 @@ namespace waymark {
 namespace {
 
 using detail::at;
+
+/// A held coordinate has so many times the information that the edges give it: its sigma is a millionth.
+constexpr double kHeldInformation = 1e12;
 
 }  // namespace
 
@@ -51,6 +55,7 @@ double NormalEquations::linearize(const std::vector<double>& values,
                                   std::span<const double> evidence_weights) {
   const double chi2 = linearize_edges({values.data(), graph_.offsets().data()}, evidence_weights);
   structure_.add_slots(hessian_.data(), gradient_.data());
+  hold_coordinates();
   return chi2;
 }
 
@@ -59,7 +64,32 @@ double NormalEquations::linearize_with_concave_terms(const std::vector<double>& 
   const double chi2 = linearize_edges(view, {});
   for (std::size_t b = 0; b < graph_.batch_count(); ++b) add_concave_terms(b, view);
   structure_.add_slots(hessian_.data(), gradient_.data());
+  hold_coordinates();
   return chi2;
+}
+
+/// Returns the place in hessian() of the diagonal element of a held coordinate.
+std::size_t NormalEquations::place_of(const HeldCoordinate& held) const {
+  const BlockPattern& p = pattern();
+  const int height = p.height[at(held.column)];
+  const int row = height - p.size[at(held.column)] + held.coordinate;
+  return at(p.value[at(held.column)] + std::int64_t{held.coordinate} * height + row);
+}
+
+void NormalEquations::hold_coordinates() {
+  for (const HeldCoordinate& held : structure_.held_coordinates()) {
+    double own = 0;  // what the edges know of it; where they know nothing, of the others of its vertex
+    for (int k = 0; k < pattern().size[at(held.column)]; ++k)
+      own = std::max(own, hessian_[place_of({held.column, k})]);
+    double& information = hessian_[place_of(held)];
+    information = kHeldInformation * (information > 0 ? information : own);
+  }
+}
+
+double NormalEquations::log_of_held_information() const {
+  double sum = 0;
+  for (const HeldCoordinate& held : structure_.held_coordinates()) sum += std::log(hessian_[place_of(held)]);
+  return sum;
 }
 
 void NormalEquations::add_concave_terms(std::size_t batch, const ValueView& view) {

@@ -27,7 +27,9 @@ class NormalEquations {
   /// not depend on it.
   void set_threads(ThreadPool* pool) { pool_ = pool; }
 
-  /// Computes H and g at `values` (in the layout of graph.values()), and returns chi2 there.
+  /// Computes H and g at `values` (in the layout of graph.values()), and returns chi2 there. A coordinate
+  /// that the structure holds gets 1e12 times the information that it has. It then keeps its value, up to
+  /// rounding, if the edges do not see the motion that it stands for (gauge.hpp).
   /// @param evidence_weights empty, or NormalView::evidence_weight for each batch
   double linearize(const std::vector<double>& values, std::span<const double> evidence_weights = {});
   /// Computes the same with the whole second-order terms of the losses of edges with fixed arity,
@@ -48,6 +50,9 @@ class NormalEquations {
   /// Returns the diagonal of H in elimination order, like all vectors here. It is collected once
   /// per linearisation.
   [[nodiscard]] const Eigen::VectorXd& diagonal() const;
+  /// Returns the sum of log H_cc over the coordinates that the structure holds. Without it the determinant of
+  /// H is that of the other unknowns.
+  [[nodiscard]] double log_of_held_information() const;
   /// Computes H + diag(extra) into `damped` (in the layout of hessian()).
   void add_to_diagonal(const Eigen::VectorXd& extra, std::vector<double>& damped) const;
   /// Computes H x into `product`.
@@ -60,6 +65,8 @@ class NormalEquations {
 
  private:
   double linearize_edges(const ValueView& view, std::span<const double> evidence_weights);
+  [[nodiscard]] std::size_t place_of(const HeldCoordinate& held) const;
+  void hold_coordinates();
   void add_concave_terms(std::size_t batch, const ValueView& view);
   /// Calls work(batch, range) for all edges: the chunks in parallel, then the last one. It sums the
   /// results in order.

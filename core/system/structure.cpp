@@ -8,6 +8,7 @@
 #include <waymark/core/linear/detail/factor_work.hpp>
 #include <waymark/core/system/detail/incidence.hpp>
 #include <waymark/core/system/detail/time_order.hpp>
+#include <waymark/core/system/held_marks.hpp>
 #include <waymark/core/system/structure.hpp>
 
 namespace waymark {
@@ -79,9 +80,19 @@ void Structure::choose_unknowns(const Graph& graph, std::span<const char> held) 
   const std::vector<char> has_edge = vertices_with_edges(graph);
   for (std::size_t v = column_of_.size(); v < graph.vertex_count(); ++v) {
     const auto vertex = static_cast<VertexIndex>(v);
-    const bool unknown = has_edge[v] && !graph.fixed(vertex) && held[v] == 0;
+    const bool unknown = has_edge[v] && !graph.fixed(vertex) && !is_wholly_held(held[v]);
     column_of_.push_back(unknown ? static_cast<int>(vertex_of_.size()) : -1);
     if (unknown) vertex_of_.push_back(vertex);
+  }
+}
+
+void Structure::collect_held_coordinates(const Graph& graph, std::span<const char> held) {
+  held_coordinates_.clear();
+  for (std::size_t column = 0; column < vertex_of_.size(); ++column) {
+    const VertexIndex v = vertex_of_[column];
+    if (held[at(v)] == 0) continue;
+    for (int k = 0; k < graph.vertex_type(v).tangent_size && k < kMarkedCoordinates; ++k)
+      if (holds_coordinate(held[at(v)], k)) held_coordinates_.push_back({static_cast<int>(column), k});
   }
 }
 
@@ -127,6 +138,7 @@ void Structure::build(const Graph& graph, std::span<const char> held, bool growi
   make_pattern(graph, 0, upper.begin, upper.rows);
   size_slots(graph);
   make_scatter(graph, false);
+  collect_held_coordinates(graph, held);
 }
 
 // The states of a drive that begin and end, such as the biases of satellites, make a narrow band in the order of
@@ -169,7 +181,8 @@ void Structure::extend(const Graph& graph, std::span<const char> held) {
       const auto old_in_edge = std::count_if(vertices.begin(), vertices.end(),
                                              [&](VertexIndex v) { return at(v) < old_vertices; });
       const bool loose = std::any_of(vertices.begin(), vertices.end(), [&](VertexIndex v) {
-        return at(v) < old_vertices && column_of_[at(v)] < 0 && !graph.fixed(v) && held[at(v)] == 0;
+        return at(v) < old_vertices && column_of_[at(v)] < 0 && !graph.fixed(v) &&
+               !is_wholly_held(held[at(v)]);
       });
       append_only = append_only && !loose && old_in_edge <= 1;
     };
@@ -183,6 +196,7 @@ void Structure::extend(const Graph& graph, std::span<const char> held) {
     size_slots(graph);
     retarget_held(graph);  // slots are after the numbers, which have grown
     make_scatter(graph, true);
+    collect_held_coordinates(graph, held);
     return;
   }
   const std::vector<VertexIndex> old_order = vertex_of_;
@@ -194,6 +208,7 @@ void Structure::extend(const Graph& graph, std::span<const char> held) {
   make_pattern(graph, 0, upper.begin, upper.rows);
   size_slots(graph);
   make_scatter(graph, false);
+  collect_held_coordinates(graph, held);
 }
 
 // Orders the chosen unknowns: old ones as they were, then new ones, then dense ones, new

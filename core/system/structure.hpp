@@ -20,14 +20,20 @@ struct BlockOrder {
   std::string method;      ///< "natural", "leaves first", "amd" or "time"
 };
 
+/// A coordinate of the tangent of an unknown vertex that keeps its value.
+struct HeldCoordinate {
+  int column = 0;      ///< block column of the vertex
+  int coordinate = 0;  ///< of its tangent
+};
+
 /// It can be copied, owns all its data, and keeps no reference to the graph. Returned spans
 /// and references are valid until the next build(), extend() or remove(). Any number of
 /// threads may read it.
 class Structure {
  public:
   /// Computes the structure anew: order, pattern, scatter offsets.
-  /// @param held per vertex: not zero keeps it out of the unknowns (like the fixed vertices
-  /// of the graph)
+  /// @param held per vertex, a mark of held_marks.hpp: kWhollyHeld keeps it out of the unknowns (like the
+  /// fixed vertices of the graph); one with some coordinates held stays among them
   /// @param growing the graph will grow at its end. States without a place (calibration) are then
   /// ordered last, however few edges they touch yet: eliminated before the poses that will join them,
   /// they would join all of these with each other.
@@ -62,6 +68,8 @@ class Structure {
   [[nodiscard]] VertexIndex vertex_of(int column) const {
     return vertex_of_[static_cast<std::size_t>(column)];
   }
+  /// Returns the coordinates of unknown vertices that are held, by column.
+  [[nodiscard]] std::span<const HeldCoordinate> held_coordinates() const { return held_coordinates_; }
   /// Returns how many chunks every scatter has. The last one runs alone, after the others.
   [[nodiscard]] int chunks() const { return chunks_; }
   /// Returns how many doubles to reserve for the matrix and the gradient: the numbers plus a
@@ -81,6 +89,7 @@ class Structure {
   static constexpr std::size_t kChunkVertices = 4096;
 
   void choose_unknowns(const Graph& graph, std::span<const char> held);
+  void collect_held_coordinates(const Graph& graph, std::span<const char> held);
   /// Takes the order of time if it needs less work.
   void prefer_time_order(const Graph& graph, std::span<const std::int64_t> begin, std::span<const int> rows,
                          std::span<const char> dense, BlockOrder& order) const;
@@ -106,6 +115,7 @@ class Structure {
   std::vector<std::size_t> scattered_edges_;  // per batch: edges that have their offsets
   std::vector<int> column_of_;
   std::vector<VertexIndex> vertex_of_;
+  std::vector<HeldCoordinate> held_coordinates_;
   int dense_columns_ = 0;
   int chunks_ = 1;
   int scratch_ = 0;     // rows of the largest vertex, if any is held

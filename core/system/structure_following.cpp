@@ -106,6 +106,7 @@ void Structure::remove(const Graph& graph, const Removal& removal, std::span<con
     if (upper.intact[j] != 0) shifts[j] = pattern_.value[j] - old_value[at(old_column[j])];
   }
   move_scatter(graph, removal, shifts);
+  collect_held_coordinates(graph, held);
 }
 
 // Blocks of remaining edges move with their columns. Blocks at a held vertex, a dense column or a

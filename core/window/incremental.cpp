@@ -18,7 +18,7 @@ IncrementalOptimizer::IncrementalOptimizer(Graph& graph, std::unique_ptr<Algorit
 
 void IncrementalOptimizer::follow() {
   if (structure().pattern().version > 0 && followed_version_ == graph_.structure_version()) return;
-  Gauge gauge = find_gauge(graph_, PartlyAnchored::hold);
+  Gauge gauge = find_gauge(graph_, PartlyAnchored::hold_vertex);
   notes_ = std::move(gauge.messages);
   // If an old vertex becomes held, or is no longer held, its column changes. The structure then
   // starts over.

@@ -12,6 +12,7 @@
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/linear/detail/information_root.hpp>
 #include <waymark/core/system/detail/time_order.hpp>
+#include <waymark/core/system/held_marks.hpp>
 #include <waymark/core/window/marginalization.hpp>
 
 namespace waymark {
@@ -141,7 +142,7 @@ void Elimination::add_edge(const EdgeBatchBase& batch, const EdgeType& type, std
   std::vector<std::size_t> order;
   Eigen::Index columns = 0;
   for (std::size_t k = 0; k < named.size(); ++k) {
-    if (graph_.fixed(named[k]) || (!held_.empty() && held_[at(named[k])] != 0)) continue;
+    if (graph_.fixed(named[k]) || (!held_.empty() && is_wholly_held(held_[at(named[k])]))) continue;
     order.push_back(k);
     columns += jacobians[k].cols();
   }

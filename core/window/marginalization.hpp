@@ -46,7 +46,7 @@ struct Marginalization {
 /// touches (GNSS outage) goes too; a caller that needs it later adds it again with the same id. Robust losses
 /// enter with their weights and second-order terms at the present values (robust_information.hpp), frozen.
 ///
-/// @param held per vertex, or empty: vertices that are known besides the fixed ones, as find_gauge
+/// @param held per vertex, or empty: wholly held ones (held_marks.hpp) are known besides the fixed ones, as find_gauge
 /// returns them. Without it, a graph that nothing anchors stays so to first order. The prior is
 /// quadratic in the axes of the frame, so a later turn of the whole graph by more than a little
 /// would strain it.

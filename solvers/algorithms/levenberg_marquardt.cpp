@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <waymark/core/registry/options.hpp>
@@ -18,7 +19,9 @@ struct LevenbergMarquardtOptions {
 /// Nielsen, "Damping parameter in Marquardt's method" (1999). Near the minimum a damped step does
 /// not show convergence, so the undamped one is computed and proposed there, and also where the
 /// steps crawl: in a curved valley (a long chain that turns about its end) damped steps follow the
-/// floor, and full steps leave it and come back further down. A full step that goes uphill is kept
+/// floor, and full steps leave it and come back further down. So does the first step: damping holds
+/// back the soft directions, in which a graph that was chained by its odometry is wrong as a whole, and
+/// folds it into a false minimum. A full step that goes uphill is kept
 /// on trial, as in the watchdog technique of Chamberlain, Powell, Lemarechal and Pedersen (1982): a
 /// few more of them must lead below the chi2 of before, or all are undone.
 class LevenbergMarquardt final : public Algorithm {
@@ -31,6 +34,7 @@ class LevenbergMarquardt final : public Algorithm {
     look_below_ = std::numeric_limits<double>::infinity();
     patience_ = kPatience;
     crawled_ = 0;
+    is_first_ = true;
     last_promised_ = std::numeric_limits<double>::infinity();
     end_trial();
   }
@@ -55,7 +59,8 @@ class LevenbergMarquardt final : public Algorithm {
       step.control = damping_;
       // The damped step promises little, either because of the damping or because this is the
       // minimum, or the steps crawl. The full step shows which.
-      if (crawled_ >= patience_ || step.predicted_decrease <= std::min(kLookAhead * tolerance, look_below_)) {
+      if (is_first_ || crawled_ >= patience_ ||
+          step.predicted_decrease <= std::min(kLookAhead * tolerance, look_below_)) {
         promised_ = step.predicted_decrease;
         if (solve_step(equations, solver, {}, scratch_, newton_, slope) == FactorStatus::ok) {
           step.delta.swap(newton_);
@@ -77,6 +82,7 @@ class LevenbergMarquardt final : public Algorithm {
       ++trial_steps_;
       if (gained_ > 0) end_trial();
       crawled_ = 0;
+      is_first_ = is_first_ && trial_steps_ > 0;
       return;
     }
     crawled_ = step.predicted_decrease > kCrawl * last_promised_ ? crawled_ + 1 : 0;
@@ -90,7 +96,7 @@ class LevenbergMarquardt final : public Algorithm {
     if (!step.full_newton) {
       grow();
     } else if (trial_steps_ > 0) {
-      trial_steps_ = kTrialSteps;  // its end was not finite
+      trial_steps_ = longest_trial();  // its end was not finite
     } else {
       look_later();
     }
@@ -103,13 +109,14 @@ class LevenbergMarquardt final : public Algorithm {
   static constexpr double kCrawl = 0.5;      // a crawling step promises this share of the one before it
   static constexpr int kPatience = 4;        // crawling steps in a row before a full step is tried
   static constexpr int kLongestPatience = 64;
-  static constexpr int kTrialSteps = 4;  // full steps that may lead below the chi2 before them
+  static constexpr int kTrialSteps = 4;       // full steps that may lead below the chi2 before them
+  static constexpr int kFirstTrialSteps = 8;  // the same from the first values, which may be far off
 
   /// Proposes the next full step of a trial, or ends the trial where it cannot succeed any more.
   ProposalStatus propose_on_trial(const NormalEquations& equations, LinearSolver& solver, double tolerance,
                                   Step& step) {
     double slope = 0;
-    const bool solved = trial_steps_ < kTrialSteps &&
+    const bool solved = trial_steps_ < longest_trial() &&
                         solve_step(equations, solver, {}, scratch_, step.delta, slope) == FactorStatus::ok;
     if (!solved || -slope <= tolerance) {  // the latter: a minimum above the values of before
       end_trial();
@@ -121,17 +128,21 @@ class LevenbergMarquardt final : public Algorithm {
     return ProposalStatus::ok;
   }
 
+  [[nodiscard]] int longest_trial() const { return is_first_ ? kFirstTrialSteps : kTrialSteps; }
+
   void end_trial() {
     trial_steps_ = 0;
     gained_ = 0;
   }
 
   /// The full step promised more than the model can predict. It is tried again only after damped
-  /// steps promise much less, or have crawled twice as long.
+  /// steps promise much less, or have crawled twice as long. Of the first steps nothing is concluded: they
+  /// are far from the minimum.
   void look_later() {
+    crawled_ = 0;
+    if (std::exchange(is_first_, false)) return;
     look_below_ = 0.01 * promised_;
     patience_ = std::min(2 * patience_, kLongestPatience);
-    crawled_ = 0;
   }
 
   void set_scale(const NormalEquations& equations) {
@@ -163,6 +174,7 @@ class LevenbergMarquardt final : public Algorithm {
   // a damped step that promises less than this is compared with the full one
   double look_below_ = 0;
   double promised_ = 0;       // by the damped step that the full one replaced
+  bool is_first_ = true;      // no step was taken yet, or only the trial from the first values
   bool full_ = false;         // the last proposal was the full step
   double last_promised_ = 0;  // by the last damped step that was taken
   int crawled_ = 0;           // damped steps in a row that promised nearly as much as the one before

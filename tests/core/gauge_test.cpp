@@ -1,13 +1,15 @@
-// The anchors of a graph: rank 0 is held with a note, rank 1 and 2 are refused by name, rank 3 is left
-// alone.
+// The anchors of a graph: at rank 0 a vertex is held with a note, at rank 1 and 2 as many coordinates as
+// motions are left, rank 3 is left alone. What only the present values leave open is refused.
 #include <algorithm>
 #include <array>
 
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/covariance/marginals.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/gauge.hpp>
+#include <waymark/core/system/held_marks.hpp>
 #include <waymark/types_se2/g2o_edges.hpp>
 
 #include "support/problems.hpp"
@@ -123,16 +125,73 @@ TEST_CASE("gauge rank 3: a fixed vertex, a prior, or two fixes at different plac
   }
 }
 
-TEST_CASE("gauge rank 2: a single fix is refused, the message names the vertex and the remedy") {
+TEST_CASE("gauge rank 2: beside a single fix a heading is held, and the message names both") {
   Graph graph;
   const auto chain = add_chain(graph, 40, 5);
+  add_fix(graph, add_fixed_origin(graph, 100), chain[2]);
+  const Gauge gauge = find_gauge(graph);
+  CHECK(gauge.held[static_cast<std::size_t>(chain[0])] == mark_of_coordinate(2));
+  CHECK(std::count(gauge.held.begin(), gauge.held.end(), 0) == 5);
+  REQUIRE(gauge.messages.size() == 1);
+  CHECK_THAT(gauge.messages[0], Contains("2 of 3 rigid motions") &&
+                                    Contains("heading of vertex 40 is held at its present value"));
+}
+
+TEST_CASE("gauge rank 2: a drive with a single fix is refused, because its heading is a result") {
+  Graph graph;
+  const auto chain = add_chain(graph, 40, 5);
+  for (const VertexIndex v : chain) graph.set_stamp(v, Stamp{1'000'000'000LL * v});
   add_fix(graph, add_fixed_origin(graph, 100), chain[2]);
   CHECK_THROWS_AS(find_gauge(graph), InputError);
   CHECK_THROWS_WITH(find_gauge(graph), Contains("vertex 40") && Contains("2 of 3") && Contains("FIX") &&
                                            Contains("another place"));
 }
 
-TEST_CASE("gauge rank 2: a parked car with many fixes at one place is refused") {
+TEST_CASE("gauge rank 2: a single pose with a single fix keeps its heading") {
+  Graph graph;
+  const VertexIndex pose = graph.add_vertex<VertexSe2>(VertexId{3}, {4, 5, 0.5});
+  add_fix(graph, add_fixed_origin(graph, 100), pose);
+  CHECK(find_gauge(graph).held[static_cast<std::size_t>(pose)] == mark_of_coordinate(2));
+}
+
+TEST_CASE(
+    "gauge rank 2: the minimum satisfies the fix, the held heading stays, and chi2 is that without a fix") {
+  const TypeRegistry registry = waymark_test::full_registry();
+  Graph free = waymark_test::noisy_circle(20);
+  Graph graph = free;
+  const VertexIndex origin = add_fixed_origin(graph, 100);
+  graph.add_edge(EdgeGnssPosition{{50, -30}, {0, 0}}, {origin, 7}, Eigen::Matrix2d::Identity());
+  const double heading = graph.value(0)[2];
+  for (const char* name : {"gauss_newton", "levenberg_marquardt", "dogleg"}) {
+    INFO(name);
+    const auto algorithm = registry.make_algorithm(name);
+    const auto solver = registry.make_linear_solver("eigen");
+    Graph fixed = graph;
+    Graph unfixed = free;
+    const Summary summary = optimize(fixed, *algorithm, *solver, {});
+    CHECK(summary.converged());
+    CHECK(summary.unknowns == 59);  // 20 poses of 3, less the heading
+    CHECK(summary.final_chi2 == Approx(optimize(unfixed, *algorithm, *solver, {}).final_chi2).epsilon(1e-9));
+    CHECK(fixed.value(7)[0] == Approx(50).epsilon(1e-9));
+    CHECK(fixed.value(7)[1] == Approx(-30).epsilon(1e-9));
+    CHECK(fixed.value(0)[2] == Approx(heading).margin(1e-9));
+  }
+}
+
+TEST_CASE("gauge rank 2: covariances are those of the graph whose heading is known by a strong prior") {
+  Graph graph;
+  const auto chain = add_chain(graph, 0, 6);
+  add_fix(graph, add_fixed_origin(graph, 100), chain[3]);
+  Graph with_prior = graph;
+  const double heading = graph.value(chain[0])[2];
+  with_prior.add_edge(EdgePriorSe2{{0, 0, heading}}, {chain[0]}, Eigen::Vector3d(0, 0, 1e14).asDiagonal());
+  const CovarianceBlocks held = marginal_covariances(graph, chain);
+  const CovarianceBlocks known = marginal_covariances(with_prior, chain);
+  for (std::size_t i = 0; i < chain.size(); ++i) CHECK((held[i] - known[i]).norm() < 1e-6 * known[i].norm());
+}
+
+TEST_CASE(
+    "gauge rank 2: a parked car with many fixes at one place is refused, because elsewhere they would turn it") {
   Graph graph;
   const VertexIndex origin = add_fixed_origin(graph, 100);
   std::vector<VertexIndex> chain;
@@ -144,14 +203,17 @@ TEST_CASE("gauge rank 2: a parked car with many fixes at one place is refused") 
     }
     add_fix(graph, origin, chain.back());
   }
-  CHECK_THROWS_WITH(find_gauge(graph), Contains("vertex 0") && Contains("2 of 3"));
+  CHECK_THROWS_WITH(find_gauge(graph), Contains("vertex 0") && Contains("2 of 3") && Contains("FIX") &&
+                                           Contains("another place"));
 }
 
-TEST_CASE("gauge rank 1: nothing but a heading is refused") {
+TEST_CASE("gauge rank 1: beside a heading the place of a pose is held") {
   Graph graph;
   const auto chain = add_chain(graph, 0, 5);
   graph.add_edge(EdgePriorSe2{}, {chain[0]}, Eigen::Vector3d(0, 0, 100).asDiagonal());
-  CHECK_THROWS_WITH(find_gauge(graph), Contains("vertex 0") && Contains("1 of 3"));
+  const Gauge gauge = find_gauge(graph);
+  CHECK(gauge.held[static_cast<std::size_t>(chain[0])] == (mark_of_coordinate(0) | mark_of_coordinate(1)));
+  CHECK_THAT(gauge.messages.at(0), Contains("1 of 3") && Contains("x and y of vertex 0 are held"));
 }
 
 TEST_CASE("gauge: a position beside a heading make rank 3 together") {
@@ -198,7 +260,7 @@ TEST_CASE("gauge: points that know only each other would turn about one that is 
   const VertexIndex second = graph.add_vertex<VertexXy>(VertexId{8}, {4, 0});
   graph.add_edge(EdgeDistance{5}, {first, second}, Eigen::Matrix<double, 1, 1>(1));
   CHECK_THROWS_WITH(find_gauge(graph), Contains("vertex 7") && Contains("FIX two"));
-  CHECK(held_count(find_gauge(graph, PartlyAnchored::hold)) == 1);
+  CHECK(held_count(find_gauge(graph, PartlyAnchored::hold_vertex)) == 1);
 }
 
 TEST_CASE("gauge: each component is judged by itself") {
@@ -215,6 +277,22 @@ TEST_CASE("gauge: each component is judged by itself") {
   REQUIRE(gauge.messages.size() == 2);
   CHECK_THAT(gauge.messages[0], Contains("vertex 0 "));
   CHECK_THAT(gauge.messages[1], Contains("vertex 20 "));
+}
+
+TEST_CASE("gauge: a part with one fix is held beside parts that are anchored and parts that are not") {
+  Graph graph;
+  const auto anchored = add_chain(graph, 0, 4);
+  const auto loose = add_chain(graph, 20, 6, {100, 50});
+  const auto partly = add_chain(graph, 40, 3, {30, 0});
+  graph.add_edge(EdgePriorSe2{}, {anchored[1]}, Eigen::Matrix3d::Identity());
+  add_fix(graph, add_fixed_origin(graph, 100), partly[1]);
+  const Gauge gauge = find_gauge(graph);
+  CHECK(gauge.held[static_cast<std::size_t>(loose[0])] == kWhollyHeld);
+  CHECK(gauge.held[static_cast<std::size_t>(partly[0])] == mark_of_coordinate(2));
+  CHECK(std::count(gauge.held.begin(), gauge.held.end(), 0) == 12);
+  REQUIRE(gauge.messages.size() == 2);
+  CHECK_THAT(gauge.messages[0], Contains("vertex 20 "));
+  CHECK_THAT(gauge.messages[1], Contains("vertex 40 "));
 }
 
 TEST_CASE("gauge: components joined only through a fixed vertex are separate and both anchored") {

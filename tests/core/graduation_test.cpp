@@ -84,6 +84,24 @@ Spoiled spoiled_walk(int count, bool grouped, std::uint64_t seed) {
   return spoiled;
 }
 
+/// Adds false edges.
+void spoil(Spoiled& spoiled, VertexIndex from, VertexIndex to, const Eigen::Vector3d& z) {
+  spoiled.false_edges.push_back({0, spoiled.graph.batch(0).size()});
+  spoiled.graph.add_edge(EdgeSe2{z}, {from, to}, pose_information(0.02, 0.005));
+}
+
+/// Removes the edges between two vertices that follow each other.
+void part(Spoiled& spoiled, VertexIndex from) {
+  std::vector<EdgePlace> between;
+  for (std::size_t e = 0; e < spoiled.without.batch(0).size(); ++e) {
+    const auto vertices = spoiled.without.batch(0).vertices(e);
+    if (vertices[0] == from && vertices[1] == from + 1) between.push_back({0, e});
+  }
+  REQUIRE(between.size() == 1);
+  spoiled.without = without_edges(spoiled.without, between);
+  spoiled.graph = spoiled.without;
+}
+
 struct Score {
   double precision = 0;
   double recall = 0;
@@ -189,6 +207,65 @@ TEST_CASE("graduation: false closures in groups that agree among themselves are 
   CHECK(score.precision >= 0.95);
   CHECK(score.recall >= 0.95);
   CHECK(score.chi2_error < 1e-6);
+}
+
+TEST_CASE("graduation: a false closure beside the odometry of neighbours is found, and the odometry stays") {
+  const TypeRegistry registry = full_registry();
+  for (const VertexIndex from : {75, 200, 301}) {
+    Spoiled spoiled = spoiled_walk(20, false, 6);
+    spoil(spoiled, from, from + 1, {15, -24, 1.7});
+    const Score score = graduate_and_score(spoiled, "walk, false neighbours", registry);
+    CHECK(score.precision == 1);
+    CHECK(score.recall == 1);
+    CHECK(score.chi2_error < 1e-6);
+    CHECK(score.result.distrusted == std::vector<EdgePlace>{spoiled.false_edges.back()});
+    CHECK(score.result.contradicted.empty());
+  }
+}
+
+TEST_CASE(
+    "graduation: a false closure that alone joins neighbours is trusted until the others contradict it") {
+  const TypeRegistry registry = full_registry();
+  Spoiled spoiled;
+  spoiled.without = grid_walk(400, 12, 7);
+  part(spoiled, 199);  // two drives over the same streets
+  spoil(spoiled, 199, 200, {3, -4, 1});
+  CHECK(is_odometry_edge(spoiled.graph, spoiled.false_edges.back()));
+  const Score score = graduate_and_score(spoiled, "two walks", registry);
+  CHECK(score.precision == 1);
+  CHECK(score.recall == 1);
+  CHECK(score.chi2_error < 1e-6);
+  CHECK(score.result.distrusted == spoiled.false_edges);
+}
+
+TEST_CASE(
+    "graduation: parallel edges that agree stay trusted, those that contradict each other are a group") {
+  const TypeRegistry registry = full_registry();
+  const auto algorithm = registry.make_algorithm("dogleg");
+  const auto solver = registry.make_linear_solver("eigen");
+  Graph graph;
+  for (int id = 0; id < 3; ++id) graph.add_vertex<VertexSe2>(VertexId{id}, {1.0 * id, 0, 0});
+  const Eigen::Matrix3d information = pose_information(0.1, 0.1);
+  graph.add_edge(EdgeSe2{{1, 0, 0}}, {0, 1}, information);
+  graph.add_edge(EdgeSe2{{1.1, 0, 0}}, {0, 1}, information);  // half a sigma of the difference: chi2 0.5
+  graph.add_edge(EdgeSe2{{1, 0, 0}}, {1, 2}, information);
+  graph.add_edge(EdgeSe2{{-1.8, 0, 0}}, {2, 1}, information);  // chi2 0.8^2 / 0.02 = 32 > 21.1
+  std::vector<EdgePlace> trusted;
+  for (std::size_t e = 0; e < 4; ++e) trusted.push_back({0, e});
+  const auto groups = contradicting_parallels(graph, trusted, *algorithm, *solver, 0.9999);
+  REQUIRE(groups.size() == 1);
+  CHECK(groups[0] == std::vector<EdgePlace>{{0, 2}, {0, 3}});
+}
+
+TEST_CASE(
+    "graduation: where the minimum of all edges folds the graph, that of the trusted ones shows the way") {
+  const TypeRegistry registry = full_registry();
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Spoiled spoiled = spoiled_walk(130, false, seed);
+    const Score score = graduate_and_score(spoiled, "walk, 130 random", registry);
+    CHECK(score.precision > 0.99);
+    CHECK(score.recall == 1);
+  }
 }
 
 TEST_CASE("graduation: where no edge is beyond its quantile nothing is done but the optimisation") {

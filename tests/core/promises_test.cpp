@@ -37,6 +37,23 @@ struct EdgeDifference {
   Eigen::Vector2d measured{0, 0};
 };
 
+/// The direction in which a pose sees a point, on its right hand where it says left.
+template <bool kTells>
+struct EdgeOfSight {
+  static constexpr std::string_view kTag = kTells ? "EDGE_TRUE_SIGHT" : "EDGE_WRONG_SIGHT";
+  static constexpr int kErrorDimension = 2;
+  using Vertices = VertexList<VertexSe2, VertexXy>;
+  static constexpr auto fields() { return std::array{field<&EdgeOfSight::measured>("measured")}; }
+  template <typename T>
+  Vector2<T> error(const Pose2<T>& pose, const Vector2<T>& point) const {
+    return rotate_back(pose.heading, Vector2<T>(point - pose.position)) - constant_vector<T>(measured);
+  }
+  [[nodiscard]] Sight sight() const {
+    return Sight::of_place(kTells ? measured : Eigen::Vector2d(measured[0], -measured[1]));
+  }
+  Eigen::Vector2d measured{0, 0};
+};
+
 /// Its error has no derivative where both vertices are, and throws beyond a distance.
 struct EdgeFragile {
   static constexpr std::string_view kTag = "EDGE_FRAGILE";
@@ -144,6 +161,19 @@ TEST_CASE("promises: an edge that says kRelative and is not is found by its norm
   CHECK_FALSE(liar.sound());
   CHECK(check_edge_type(registry, *registry.find_edge("EDGE_DIFFERENCE")).sound());
   CHECK(check_edge_type(registry, *registry.find_edge("EDGE_SE2")).normal_error < 1e-12);
+}
+
+TEST_CASE("promises: a sight at which the error is not zero is found") {
+  TypeRegistry registry = full_registry();
+  registry.add_edge<EdgeOfSight<true>>();
+  registry.add_edge<EdgeOfSight<false>>();
+  const EdgeTypeCheck liar = check_edge_type(registry, *registry.find_edge("EDGE_WRONG_SIGHT"));
+  CHECK(liar.worst.error < kGradientTolerance);
+  CHECK(liar.sight_error > 0.2);  // twice the least measurement
+  CHECK_FALSE(liar.sound());
+  CHECK(check_edge_type(registry, *registry.find_edge("EDGE_TRUE_SIGHT")).sound());
+  CHECK(check_edge_type(registry, *registry.find_edge("EDGE_BEARING_SE2_XY")).sight_error < 1e-12);
+  CHECK(check_edge_type(registry, *registry.find_edge("EDGE_SE2_XY_RANGE_BEARING")).sight_error < 1e-12);
 }
 
 TEST_CASE(

@@ -19,6 +19,27 @@ namespace {
 
 using Pose = Pose2<double>;
 
+/// The distance of a point from a sensor beside the pose, m.
+struct EdgeTestRange {
+  static constexpr std::string_view kTag = "EDGE_TEST_RANGE";
+  static constexpr int kErrorDimension = 1;
+  using Vertices = VertexList<VertexSe2, VertexXy>;
+  static constexpr auto fields() {
+    return std::array{field<&EdgeTestRange::measured>("measured"), field<&EdgeTestRange::sensor>("sensor")};
+  }
+  template <typename T>
+  Eigen::Matrix<T, 1, 1> error(const Pose2<T>& pose, const Vector2<T>& point) const {
+    using std::sqrt;
+    const Vector2<T> d =
+        rotate_back(pose.heading, Vector2<T>(point - pose.position)) - constant_vector<T>(sensor);
+    return Eigen::Matrix<T, 1, 1>(sqrt(d.squaredNorm()) - T(measured));
+  }
+  [[nodiscard]] Sight sight() const { return Sight::of_range_alone(measured, sensor); }
+
+  double measured = 0;
+  Eigen::Vector2d sensor = Eigen::Vector2d::Zero();
+};
+
 /// A spiral of several turns, 1 m between poses.
 std::vector<Pose> spiral(int poses) {
   std::vector<Pose> track{Pose(2, -1, 0.4)};
@@ -160,6 +181,33 @@ TEST_CASE("starts: a point seen by range and bearing, or by bearings alone, is p
     INFO(name);
     CHECK(started(ranges, registry, name).chi2() < 1e-12);
     CHECK(started(bearings, registry, name).chi2() < 1e-12);
+  }
+}
+
+TEST_CASE("starts: a point of ranges alone comes to where their circles meet, whatever some false ones say") {
+  const TypeRegistry registry = full_registry();
+  const auto track = spiral(40);
+  const Eigen::Vector2d point(7, 9);
+  const Eigen::Vector2d sensor(1.5, -0.5);
+  const Graph poses = wild_track(track);
+  const auto with_ranges = [&](std::initializer_list<int> from_poses, int false_ones) {
+    Graph graph = poses;
+    const VertexIndex landmark = graph.add_vertex<VertexXy>(VertexId{1000}, {-400, 500});
+    for (const int from : from_poses) {
+      const Pose& pose = track[static_cast<std::size_t>(from)];
+      const Eigen::Vector2d d = rotate_back(pose.heading, Eigen::Vector2d(point - pose.position)) - sensor;
+      const double wrong = false_ones-- > 0 ? 12 : 0;
+      graph.add_edge(EdgeTestRange{d.norm() + wrong, sensor}, {from, landmark},
+                     Eigen::Matrix<double, 1, 1>::Constant(25));
+    }
+    return graph;
+  };
+  for (const std::string& name : start_names(registry)) {
+    INFO(name);
+    CHECK(started(with_ranges({3, 20, 33}, 0), registry, name).chi2() < 1e-9);
+    // Two false ranges of seven cost their own chi2, and nothing else.
+    CHECK(started(with_ranges({30, 3, 8, 14, 20, 27, 33}, 2), registry, name).chi2() ==
+          Approx(2 * 25 * 12 * 12).epsilon(1e-6));
   }
 }
 

@@ -215,10 +215,11 @@ TEST_CASE("evaluation: nothing is kept out of a drive that has truth or withheld
 TEST_CASE("evaluation: a graph without normal equations has no matrices, and report and metrics say so") {
   const std::string folder = fresh_folder();
   REQUIRE(run({"run", write_drive(folder), "-m", "g1", "--out", folder + "r", "-q"}).code == 0);
-  // A pose whose place alone is measured: nothing determines its heading.
-  const std::string graph = write_text(folder + "lone.graph", read_text(folder + "r/g1.fused.graph") +
-                                                                  "VERTEX_SE2 900000 0 0 0\n"
-                                                                  "EDGE_PRIOR_SE2_XY 900000 0 0 1 0 1\n");
+  // A point that is seen in one direction: nothing determines its distance.
+  const std::string graph =
+      write_text(folder + "lone.graph", read_text(folder + "r/g1.fused.graph") +
+                                            "VERTEX_SE2 900000 0 0 0\nFIX 900000\nVERTEX_XY 900001 1 1\n"
+                                            "EDGE_BEARING_SE2_XY 900000 900001 0.7 1\n");
   const RunResult result = run({"evaluate", graph, "--out", folder + "e"});
   INFO(result.err);
   CHECK(result.code == 0);

@@ -141,6 +141,21 @@ TEST_CASE("covariance: no minimum, no covariances: the tables are empty and that
   CHECK(json.at("covariances").empty());
 }
 
+TEST_CASE("covariance: where they cannot be computed the minimum is written, and the weak vertex is told") {
+  const std::string folder =
+      folder_with("GRAPH 1\nVERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 0 0 0\nEDGE_SE2 0 1 1 2 0 1 0 0 1 0 0\n");
+  const RunResult result = run(
+      {"optimize", "a.graph", "-o", "b.graph", "--covariance", "all", "--covariance-file", "b.csv"},
+      {.folder = folder});
+  CHECK(result.code == 0);
+  CHECK(contains(result.err, "warning: the result has no covariances: "));
+  CHECK(contains(result.err, "VERTEX_SE2 1"));
+  const std::string written = read_text(folder + "b.graph");
+  CHECK(contains(written, "VERTEX_SE2 1 1 2 0\n"));
+  CHECK(contains(written, "the result has no covariances"));  // in its provenance
+  CHECK(read_text(folder + "b.csv") == "id,tag,stamp_ns\n");
+}
+
 TEST_CASE("covariance: a table that cannot be written is refused before the work") {
   const std::string folder = folder_with(square_graph());
   const auto refuse = [&](const std::string& which, const std::string& name) {

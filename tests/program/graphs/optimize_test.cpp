@@ -1,4 +1,8 @@
 // `waymark optimize` and `waymark check`: their inputs, outputs and exit codes.
+#include <cmath>
+#include <map>
+#include <sstream>
+
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -62,8 +66,8 @@ TEST_CASE("optimize: bad graphs: exit 3, place and reason, and nothing is writte
       {"\x7f"
        "ELF\x1b[2J\n",
        "bad.graph:1:1: unknown tag '\\x7fELF\\x1b[2J'"},
-      {"GRAPH 1\nVERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 0 0 0\nEDGE_GNSS_POSITION 0 1 1 0 0 0 1 0 1\nFIX 0\n",
-       "anchored in only 2 of 3 rigid motions"},
+      {"GRAPH 1\nVERTEX_SE2 0 0 0 0\nVERTEX_XY 1 1 1\nEDGE_BEARING_SE2_XY 0 1 0.7 1\nFIX 0\n",
+       "anchored in only 1 of 2 rigid motions"},
   };
   const std::string folder = fresh_folder();
   for (const Case& c : cases) {
@@ -72,6 +76,32 @@ TEST_CASE("optimize: bad graphs: exit 3, place and reason, and nothing is writte
     CHECK(names_in(folder) == std::vector<std::string>{"bad.graph"});
     CHECK(run({"check", "bad.graph"}, {.folder = folder}).code == 3);
   }
+}
+
+TEST_CASE("optimize: a part with one fix keeps a heading, and the other parts are as they are without it") {
+  const std::string folder = fresh_folder();
+  const std::string one_fix =
+      "VERTEX_SE2 100 9 9 0.25\nVERTEX_SE2 101 0 0 0\nEDGE_SE2 100 101 1 0 0 100 0 0 100 0 100\n"
+      "EDGE_PRIOR_SE2_XY 101 5 6 4 0 4\n";
+  write_text(folder + "a.graph", square_graph() + one_fix);
+  const RunResult result = run({"optimize", "a.graph", "-o", "b.graph"}, {.folder = folder});
+  CHECK(result.code == 0);
+  CHECK(contains(result.err, "heading of vertex 100 is held at its present value"));
+  std::istringstream lines(read_text(folder + "b.graph"));
+  std::map<std::string, std::vector<double>> poses;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string tag;
+    std::string id;
+    words >> tag >> id;
+    if (tag != "VERTEX_SE2") continue;
+    for (double x = 0; words >> x;) poses[id].push_back(x);
+  }
+  CHECK(poses.at("100").at(2) == Approx(0.25));
+  CHECK(poses.at("101").at(0) == Approx(5));
+  CHECK(poses.at("101").at(1) == Approx(6));
+  CHECK(poses.at("100").at(0) == Approx(5 - std::cos(0.25)));
+  CHECK(poses.at("100").at(1) == Approx(6 - std::sin(0.25)));
 }
 
 TEST_CASE("optimize: files that cannot be read say why") {

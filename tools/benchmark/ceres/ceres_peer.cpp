@@ -12,6 +12,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/system/gauge.hpp>
+#include <waymark/core/system/held_marks.hpp>
 #include <waymark/plugins/odometry/edge_odometry.hpp>
 #include <waymark/types_se2/edge_gnss.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
@@ -341,6 +342,9 @@ class CeresProblem {
   void hold(const std::vector<char>& held) {
     for (std::size_t i = 0; i < graph_.vertex_count(); ++i) {
       const auto v = static_cast<VertexIndex>(i);
+      if (held[i] != 0 && !is_wholly_held(held[i]))
+        throw InputError("the peer cannot hold single coordinates of vertex " + to_string(graph_.id(v)) +
+                         ", which is anchored in part: FIX one vertex");
       if ((held[i] != 0 || graph_.fixed(v)) && problem_.HasParameterBlock(block(v)))
         problem_.SetParameterBlockConstant(block(v));
     }

@@ -30,14 +30,15 @@ struct OptimizeOptions {
 };
 
 /// A minimum of least squares with a few wrong edges is the minimum, and wrong.
-void warn_of_wrong_edges(const Summary& summary, const Graph& graph, const Console& console) {
+void warn_of_wrong_edges(const Summary& summary, const Graph& graph, bool is_graduated,
+                         const Console& console) {
   constexpr double kFar = 4;
   const double plausible = plausible_chi2(graph);
   if (!summary.converged() || !(summary.final_chi2 > kFar * plausible) || has_losses(graph)) return;
   console.warning(fmt::format(
       "chi2 is {:.4g} at the minimum, where edges that are as good as they say have at most {:.4g}: some edges are "
-      "wrong (try --loss cauchy:1, or --robust gnc), or all of them say too much",
-      summary.final_chi2, plausible));
+      "wrong{}, or all of them say too much",
+      summary.final_chi2, plausible, is_graduated ? "" : " (try --loss cauchy:1, or --robust gnc)"));
 }
 
 ExitCode optimize_file(const OptimizeOptions& options) {
@@ -62,8 +63,9 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   const MultiStartSummary result =
       optimize_document(document, options.minimization, registry, console, minimizer);
   record_optimization(result, document);
-  warn_of_wrong_edges(result.summary, document.graph, console);
+  warn_of_wrong_edges(result.summary, document.graph, graduated.has_value(), console);
   if (graduated) {
+    for (const std::string& note : graduated->notes) warn(note, document, console);
     document.provenance.emplace_back(
         "outliers", std::to_string(graduated->result.outliers.size()) + " edges left out by gnc");
     if (!options.robust.outliers.empty()) {

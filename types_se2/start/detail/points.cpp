@@ -7,6 +7,7 @@
 
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/types_se2/se2.hpp>
+#include <waymark/types_se2/start/detail/circles.hpp>
 
 namespace waymark {
 namespace {
@@ -93,23 +94,31 @@ void place_points(const Graph& graph, std::vector<Sighting> sightings, const std
                    [](const Sighting& a, const Sighting& b) { return a.to < b.to; });
   Places places;
   std::vector<Ray> rays;
+  std::vector<Circle> circles;
   for (std::size_t k = 0; k < sightings.size(); ++k) {
     const VertexIndex point = sightings[k].to;
     if (placed[static_cast<std::size_t>(sightings[k].from)] != 0) {
       const Ray ray = in_frame(value(sightings[k].from), sightings[k].sight);
-      if (sightings[k].sight.has_range)
+      if (sightings[k].sight.has_place())
         places.emplace_back(ray.origin + ray.way);
+      else if (sightings[k].sight.has_range)
+        circles.push_back({ray.origin, ray.way.norm()});
       else
         rays.push_back({ray.origin, ray.way.normalized()});
     }
     if (k + 1 < sightings.size() && sightings[k + 1].to == point) continue;
     if (places.empty()) places = crossings(rays);
+    if (places.empty()) {
+      const Eigen::Vector2d present(value(point)[0], value(point)[1]);
+      if (const auto place = place_on_circles(circles, present)) places.push_back(*place);
+    }
     if (!places.empty() && placed[static_cast<std::size_t>(point)] == 0 && !graph.fixed(point)) {
       const Eigen::Vector2d place = median(places);
       std::copy_n(place.data(), 2, value(point));
     }
     places.clear();
     rays.clear();
+    circles.clear();
   }
 }
 

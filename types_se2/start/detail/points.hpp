@@ -8,9 +8,10 @@
 namespace waymark {
 
 /// Places each free point that is not placed yet from the placed poses that saw it. Sightings with a
-/// range give a place each; without any, pairs of rays that cross do. The point comes to the median of
-/// these places by each coordinate, which a few false sightings do not move far. A point of parallel
-/// rays, or of one ray, keeps its value.
+/// range and a bearing give a place each; without any, pairs of rays that cross do. The point comes to the
+/// median of these places by each coordinate, which a few false sightings do not move far. A point of ranges
+/// alone comes to where their circles meet; of two such places, to the nearer one. A point of parallel rays, or of
+/// one ray or circle, keeps its value.
 /// @param placed per vertex, not zero: its value is right; of points also: it is left alone
 /// @param values in the layout of Graph::values()
 void place_points(const Graph& graph, std::vector<Sighting> sightings, const std::vector<char>& placed,

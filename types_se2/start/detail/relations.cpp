@@ -137,7 +137,7 @@ std::vector<Relation> planar_relations(const Graph& graph) {
     }
   }
   for (const Sighting& seen : planar_sightings(graph)) {
-    if (!seen.sight.has_range) continue;
+    if (!seen.sight.has_place()) continue;
     relations.push_back({.from = seen.from,
                          .to = seen.to,
                          .translation = seen.sight.place(),

@@ -20,7 +20,7 @@ class SightingReader {
     if (graph_.vertex_type(vertices[0]).tag != VertexSe2::kTag) return;
     if (graph_.vertex_type(vertices[1]).tag != VertexXy::kTag) return;
     Sighting seen{.from = vertices[0], .to = vertices[1], .sight = *sight};
-    if (sight->has_range) seen.position_weight = weight(batch, edge, seen);
+    if (sight->has_place()) seen.position_weight = weight(batch, edge, seen);
     out.push_back(seen);
   }
 

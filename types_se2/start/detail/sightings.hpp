@@ -11,7 +11,7 @@ struct Sighting {
   VertexIndex from = -1;  ///< a pose (VERTEX_SE2)
   VertexIndex to = -1;    ///< a point (VERTEX_XY)
   Sight sight;
-  /// mean information per axis about the place of the point, 1/m^2; 0 without a range
+  /// mean information per axis about the place of the point, 1/m^2; 0 without a range or a bearing
   double position_weight = 0;
 };
 

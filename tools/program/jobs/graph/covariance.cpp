@@ -7,6 +7,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/covariance/marginals.hpp>
+#include <waymark/core/system/held_marks.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/program/jobs/graph/covariance.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
@@ -100,12 +101,13 @@ Json chart_json(const formats::GraphDocument& document) {
       {"upper_triangle", types}};
 }
 
-/// Returns the vertices that are certain by convention, and the sentences about the reason.
+/// Returns the vertices that are certain by convention, and the sentences about them and about single held
+/// coordinates.
 Json held_json(const Graph& graph) {
   const Gauge gauge = find_gauge(graph);
   Json held = Json::array();
   for (std::size_t v = 0; v < gauge.held.size(); ++v) {
-    if (gauge.held[v] != 0) held.push_back(to_number(graph.id(static_cast<VertexIndex>(v))));
+    if (is_wholly_held(gauge.held[v])) held.push_back(to_number(graph.id(static_cast<VertexIndex>(v))));
   }
   return {{"vertices", held}, {"notes", gauge.messages}};
 }

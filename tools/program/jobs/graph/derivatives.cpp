@@ -18,6 +18,12 @@ std::string problem_of(const EdgeTypeCheck& check, const std::string& tag, const
         "is not unchanged if both vertices move rigidly together, or carry() of their type is wrong",
         tag, origin, check.normal_error);
   }
+  if (check.sight_error > kSightTolerance) {
+    return fmt::format(
+        "{} of {}: its error is {:.1e} where its sight says that it is zero: sight() and error() disagree about "
+        "where the point is seen (core/base/sight.hpp)",
+        tag, origin, check.sight_error);
+  }
   if (check.not_finite == 0) {
     return fmt::format(
         "{} of {}: no trial has usable differences of the error; make the error smooth "
@@ -60,6 +66,7 @@ DerivativeReport check_derivatives(const TypeRegistry& registry, const text::Tex
                            {"not_finite", check.not_finite},
                            {"jacobian_error", check.worst.error},
                            {"normal_error", check.normal_error},
+                           {"sight_error", check.sight_error},
                            {"sound", check.sound()}});
     if (!check.sound()) report.problems.push_back(problem_of(check, type.tag, origin));
   }

@@ -24,6 +24,23 @@ std::string no_minimum_warning(const Summary& summary) {
          (summary.termination == Termination::interrupted ? "; the best state so far is kept" : "");
 }
 
+namespace {
+
+// The minimum stands without its covariances, and costs far more than they do.
+void add_covariances_or_warn(formats::GraphDocument& document, const std::string& which,
+                             const Console& console) {
+  try {
+    drive::add_covariances(document, which);
+    console.end_progress();
+  } catch (const InputError& error) {
+    console.end_progress();
+    document.covariances.clear();
+    warn("the result has no covariances: " + std::string(error.what()), document, console);
+  }
+}
+
+}  // namespace
+
 MultiStartSummary optimize_document(formats::GraphDocument& document, const drive::Minimization& how,
                                     const TypeRegistry& registry, const Console& console,
                                     const Minimizer& search, const std::string& work) {
@@ -36,10 +53,9 @@ MultiStartSummary optimize_document(formats::GraphDocument& document, const driv
   for (const std::string& note : result.summary.notes) console.note(note);
   if (!result.summary.converged()) console.warning(no_minimum_warning(result.summary));
   document.covariances.clear();
-  if (result.summary.converged()) {
-    if (how.covariances != "none") console.progress(work + (work.empty() ? "" : "  ") + "covariances");
-    drive::add_covariances(document, how.covariances);
-    console.end_progress();
+  if (result.summary.converged() && how.covariances != "none") {
+    console.progress(work + (work.empty() ? "" : "  ") + "covariances");
+    add_covariances_or_warn(document, how.covariances, console);
   }
   return result;
 }

@@ -14,7 +14,8 @@
 namespace waymark::program {
 
 /// Optimises, and fills document.covariances as the settings request. The console shows iterations.
-/// A result that is no minimum is reported on stderr.
+/// A result that is no minimum is reported on stderr, and so is a minimum whose covariances cannot be
+/// computed, with the vertex that is not determined.
 /// @param search in place of optimize()
 /// @param work name of the work that this is a part of, shown beside the iterations
 /// @throws InputError if the chosen start cannot be computed

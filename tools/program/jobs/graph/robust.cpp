@@ -71,6 +71,14 @@ void describe(const Graph& graph, EdgePlace place, formats::TextBuilder& lines,
   list.push_back({{"type", type.tag}, {"vertices", std::move(ids)}});
 }
 
+/// Returns tag and ids.
+std::string name_of(const Graph& graph, EdgePlace place) {
+  std::string name = graph.edge_type(place.batch).tag;
+  for (const VertexIndex v : graph.batch(place.batch).vertices(place.edge))
+    name += " " + to_string(graph.id(v));
+  return name;
+}
+
 }  // namespace
 
 void add_robust_options(CLI::App& command, RobustChoice& choice) {
@@ -87,9 +95,10 @@ void add_robust_options(CLI::App& command, RobustChoice& choice) {
       ->check(one_of("method", {"none", "gnc"}))
       ->capture_default_str();
   command
-      .add_option("--trusted", choice.trusted,
-                  "Edges that have no loss and are never outliers: odometry (between consecutive "
-                  "ids), none, or all edges of a TAG")
+      .add_option(
+          "--trusted", choice.trusted,
+          "Edges that have no loss and are no outliers: odometry (between consecutive ids, unless the "
+          "others contradict it), none, or all edges of a TAG")
       ->type_name("odometry|none|TAG")
       ->capture_default_str();
   command
@@ -132,6 +141,7 @@ Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& r
   GraduationOptions options;
   if (!choice.losses.empty()) options.loss = parse_loss(choice.losses.front(), registry).loss;
   options.trusted = trust_rule(choice);
+  options.doubts_trusted = choice.trusted == "odometry";  // a guess, where a tag is the user's word
   return [options, &found](Graph& graph, Algorithm& algorithm, LinearSolver& solver,
                            const OptimizerOptions& optimizer) mutable {
     options.optimizer = optimizer;
@@ -144,6 +154,13 @@ Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& r
       }
       lines.finish();
     });
+    for (const EdgePlace place : found->result.distrusted)
+      found->notes.push_back("a trusted edge contradicts the other edges and is left out: " +
+                             name_of(graph, place));
+    if (const auto& edges = found->result.contradicted; !edges.empty())
+      found->notes.push_back(fmt::format(
+          "{} trusted edges contradict the other edges, and the result with them: {}{}; --trusted none doubts them",
+          edges.size(), name_of(graph, edges.front()), edges.size() > 1 ? " and others" : ""));
     graph = without_edges(graph, found->result.outliers);
     return found->result.summary;
   };

@@ -38,6 +38,7 @@ struct Graduated {
   /// the outliers as lines of a graph file: tag, ids, fields, information
   std::string outlier_lines;
   nlohmann::ordered_json outlier_edges = nlohmann::ordered_json::array();
+  std::vector<std::string> notes;  ///< about trusted edges that contradict the others
 };
 
 /// Returns a minimiser for optimize_document that finds outliers and removes them from the graph.

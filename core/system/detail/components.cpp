@@ -1,0 +1,84 @@
+#include <algorithm>
+#include <numeric>
+
+#include <Eigen/Geometry>
+
+#include <waymark/core/base/detail/index.hpp>
+#include <waymark/core/system/detail/components.hpp>
+#include <waymark/core/system/detail/incidence.hpp>
+
+namespace waymark::detail {
+
+// Union-find with path halving. The root is the first vertex of each component.
+std::vector<std::int32_t> find_components(const Graph& graph) {
+  std::vector<std::int32_t> parent(graph.vertex_count());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](std::int32_t v) {
+    while (parent[at(v)] != v) v = parent[at(v)] = parent[at(parent[at(v)])];
+    return v;
+  };
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    for_each_edge(graph.batch(b), [&](std::span<const VertexIndex> vertices) {
+      std::int32_t joined = -1;
+      for (const VertexIndex v : vertices) {
+        if (graph.fixed(v)) continue;
+        const std::int32_t r = root(v);
+        if (joined >= 0 && r != joined) {
+          parent[at(std::max(r, joined))] = std::min(r, joined);
+          joined = std::min(r, joined);
+        } else {
+          joined = r;
+        }
+      }
+    });
+  }
+  for (std::size_t v = 0; v < parent.size(); ++v) parent[v] = root(static_cast<std::int32_t>(v));
+  return parent;
+}
+
+Eigen::MatrixXd motion_of(const Graph& graph, VertexIndex v, const RigidMotionView::Place& place) {
+  const VertexType& type = graph.vertex_type(v);
+  Eigen::MatrixXd motion(type.tangent_size, 3);
+  type.rigid_motion(graph.value(v).data(), place.centre, place.extent, motion.data());
+  return motion;
+}
+
+Eigen::VectorXd own_turn(const Graph& graph, VertexIndex v) {
+  const RigidMotionView::Place here{graph.vertex_type(v).position(graph.value(v).data()), 1.0};
+  return motion_of(graph, v, here).col(2);
+}
+
+Components describe_components(const Graph& graph) {
+  const std::vector<std::int32_t> root = find_components(graph);
+  const std::vector<char> has_edge = vertices_with_edges(graph);
+  Components result;
+  result.of.assign(graph.vertex_count(), -1);
+  std::vector<std::int32_t> number(graph.vertex_count(), -1);  // of the component with that root
+  std::vector<Eigen::AlignedBox2d> boxes;
+  for (std::size_t v = 0; v < graph.vertex_count(); ++v) {
+    const auto vertex = static_cast<VertexIndex>(v);
+    if (!has_edge[v] || graph.fixed(vertex)) continue;
+    const VertexType& type = graph.vertex_type(vertex);
+    if (type.rigid_motion == nullptr) continue;
+    std::int32_t& component = number[at(root[v])];
+    if (component < 0) {
+      component = static_cast<std::int32_t>(result.first.size());
+      result.first.push_back(vertex);
+      result.pose.push_back(-1);
+      result.count.push_back(0);
+      boxes.emplace_back();
+    }
+    result.of[v] = component;
+    ++result.count[at(component)];
+    boxes[at(component)].extend(type.position(graph.value(vertex).data()));
+    if (result.pose[at(component)] < 0 && !own_turn(graph, vertex).isZero(0))
+      result.pose[at(component)] = vertex;
+  }
+  // The extent is at least a metre. In a smaller component a turn would only turn its poses.
+  for (const Eigen::AlignedBox2d& box : boxes) {
+    result.places.push_back({box.center(), std::max(1.0, 0.5 * box.diagonal().norm())});
+  }
+  return result;
+}
+
+}  // namespace waymark::detail
