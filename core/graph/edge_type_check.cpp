@@ -30,9 +30,9 @@ class ValueDraw {
   [[nodiscard]] Numbers value(const VertexType& type) {
     if (is_curved(type)) return moved(type, base(type), scenario_.place);
     Numbers numbers;
-    for (const std::string& name : type.value_names) {
-      numbers.push_back(name == "heading" ? scenario_.heading + scenario_.spread * unit()
-                                          : scenario_.place * unit());
+    for (std::size_t i = 0; i < type.value_names.size(); ++i) {
+      numbers.push_back(type.value_names[i] == "heading" ? scenario_.heading + scenario_.spread * unit()
+                                                         : size_of(type, i) * unit());
     }
     return normalised(type, std::move(numbers));
   }
@@ -44,6 +44,12 @@ class ValueDraw {
   }
 
  private:
+  /// Places are far away, but no scale or rate is 2000: products of such states would be rounding alone.
+  [[nodiscard]] double size_of(const VertexType& type, std::size_t number) const {
+    constexpr double kLargestOther = 5;
+    const bool is_place = number >= type.value_units.size() || type.value_units[number] == "m";
+    return is_place ? scenario_.place : std::min(scenario_.place, kLargestOther);
+  }
   /// Tells whether values have more numbers than degrees of freedom, such as a unit vector: then not every
   /// choice of numbers is a value.
   static bool is_curved(const VertexType& type) { return type.value_size != type.tangent_size; }

@@ -23,6 +23,7 @@ constexpr int kFirstIterations = 50;
 constexpr int kMaxDoubts = 10;
 /// If more than this share of the candidates are outliers, they may be right, and a trusted edge wrong.
 constexpr double kManyOutliers = 0.2;
+constexpr std::size_t kFewOutliers = 3;  // so few say nothing about the others
 /// Steps towards the minimum with the loss before a verdict.
 constexpr int kConverge = 30;
 
@@ -63,6 +64,7 @@ class Graduation {
   bool doubt_trusted();
   bool is_implausible() const;
   double bound(EdgePlace place) const;
+  double price(EdgePlace place) const;
   std::vector<EdgePlace> beyond_bound() const;
   std::vector<EdgePlace> inside(const Verdict& verdict) const;
   double first_stretch() const;
@@ -117,6 +119,13 @@ void Graduation::move_to_candidates(const std::vector<EdgePlace>& edges) {
 double Graduation::bound(EdgePlace place) const {
   const int dimension = graph_.batch(place.batch).error_dimension(place.edge);
   return chi_square_quantile(options_.inlier_probability, dimension);
+}
+
+// What an edge costs outside. A trusted edge costs more: a false closure that only joins a tail of the graph and each
+// edge of this tail explain the contradiction alike.
+double Graduation::price(EdgePlace place) const {
+  constexpr double kOfTrusted = 2;
+  return (options_.trusted(graph_, place) ? kOfTrusted : 1.0) * bound(place);
 }
 
 std::vector<EdgePlace> Graduation::beyond_bound() const {
@@ -207,7 +216,7 @@ Verdict Graduation::optimize_without(std::vector<EdgePlace> outliers) {
   graph_.set_values(kept.values());
   verdict.values = kept.values();
   verdict.cost = verdict.summary.final_chi2;
-  for (const EdgePlace place : outliers) verdict.cost += bound(place);
+  for (const EdgePlace place : outliers) verdict.cost += price(place);
   verdict.outliers = std::move(outliers);
   return verdict;
 }
@@ -224,7 +233,7 @@ std::vector<EdgePlace> Graduation::still_out(const Verdict& verdict, std::vector
     const EdgePlace place = verdict.outliers[i];
     const auto known = std::lower_bound(returned.begin(), returned.end(), place);
     const bool was_back = known != returned.end() && *known == place;
-    if (was_back || !(innovation[i] <= bound(place))) {
+    if (was_back || !(innovation[i] <= price(place))) {
       out.push_back(place);
     } else {
       returned.insert(known, place);
@@ -356,7 +365,8 @@ GraduationResult Graduation::run() {
   // 3. Doubt what was trusted: single edges, and all of them if they cost many of the others.
   for (int round = 0; round < kMaxDoubts && suspicious && options_.doubts_trusted && doubt_trusted(); ++round)
     search();
-  const auto many = static_cast<std::size_t>(kManyOutliers * static_cast<double>(candidates_.size()));
+  const auto many = std::max(
+      kFewOutliers, static_cast<std::size_t>(kManyOutliers * static_cast<double>(candidates_.size())));
   if (!interrupted_ && options_.doubts_trusted && suspicious && best_.outliers.size() > many) {
     graph_.set_values(of_all_edges);
     std::vector<EdgePlace> all = trusted_;
@@ -370,6 +380,7 @@ GraduationResult Graduation::run() {
   for (const EdgePlace place : candidates_) {
     result_.weights[place.batch][place.edge] = options_.loss.at(squared_error(graph_, place)).weight;
   }
+  result_.candidates = candidates_.size();
   result_.contradicted = contradicted(kept_and_trusted());
   result_.outliers = std::move(best_.outliers);
   std::copy_if(result_.outliers.begin(), result_.outliers.end(), std::back_inserter(result_.distrusted),

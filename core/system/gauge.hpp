@@ -35,11 +35,11 @@ enum class PartlyAnchored {
 /// - 1 or 2 of 3: it is anchored in part, if that is also the rank of the directions in which the edges are moved
 ///   (what is known to 1e4 m only is faint in M beside 1e-6 rad, but known). As many coordinates of its first vertex
 ///   with a heading are held as there are motions left: its heading beside a single fix, its place beside a single
-///   heading. This costs nothing at the minimum, and a message says it.
+///   heading. This costs nothing where no edge sees the motion, and a message says it.
 /// @throws InputError for a component that is anchored in part only because of its present values (a parked car with
-/// fixes, poses that all stand at one place), for one with stamps (the heading of a drive is a result), for a point that is seen in one direction only, and for one that turns
-/// about any vertex that is held (points with distances between them); it names a vertex and the missing
-/// measurement. With `hold_vertex` all of these are held
+/// fixes, poses that all stand at one place), for one with stamps (the heading of a drive is a result), for a point
+/// that is seen in one direction only, and for one that turns about any vertex that is held (points with distances
+/// between them); it names a vertex and the missing measurement. With `hold_vertex` all of these are held
 [[nodiscard]] Gauge find_gauge(const Graph& graph, PartlyAnchored partly = PartlyAnchored::hold_coordinates);
 
 }  // namespace waymark

@@ -50,7 +50,7 @@ class ConstantTwist final : public OdometryModel {
         graph.add_edge(reading<EdgeSe2Standstill>(interval), poses, standstill_information(interval));
         if (bias_.is_calibrated()) add_gyro_at_rest(interval, bias_.at(nodes.stamps[i], graph), graph);
       } else {
-        add_motion(interval, nodes.stamps[i], poses, graph);
+        add_motion(nodes, i, poses, graph);
       }
     }
   }
@@ -67,16 +67,19 @@ class ConstantTwist final : public OdometryModel {
     return edge;
   }
 
-  void add_motion(const Interval& interval, Stamp stamp, const std::array<VertexIndex, 2>& poses,
+  /// Stamps are needed for calibration states only.
+  void add_motion(const DriveNodes& nodes, std::size_t i, const std::array<VertexIndex, 2>& poses,
                   Graph& graph) {
+    const Interval& interval = nodes.intervals[i];
     const auto [from, to] = poses;
     const Eigen::Matrix3d information = motion_information(interval);
-    const auto scale = [&] { return scale_.at(stamp, graph); };
-    const auto bias = [&] { return bias_.at(stamp, graph); };
-    const auto per_speed = [&] { return per_speed_.at(stamp, graph); };
+    const auto scale = [&] { return scale_.at(nodes.stamps[i], graph); };
+    const auto bias = [&] { return bias_.at(nodes.stamps[i], graph); };
+    const auto per_speed = [&] { return per_speed_.at(nodes.stamps[i], graph); };
     if (yaw_scale_.is_calibrated())
       graph.add_edge(reading<EdgeSe2OdometryYawScaled>(interval),
-                     {from, to, scale(), bias(), per_speed(), yaw_scale_.at(stamp, graph)}, information);
+                     {from, to, scale(), bias(), per_speed(), yaw_scale_.at(nodes.stamps[i], graph)},
+                     information);
     else if (per_speed_.is_calibrated())
       graph.add_edge(reading<EdgeSe2OdometryYawCalibrated>(interval),
                      {from, to, scale(), bias(), per_speed()}, information);

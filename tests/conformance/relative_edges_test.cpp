@@ -120,8 +120,11 @@ Graph edges_of_type(const TypeRegistry& registry, const EdgeType& type, double p
     const VertexType& vertex = *registry.find_vertex(tag);
     for (int i = 0; i < 3; ++i) {
       std::vector<double> value;
-      for (const std::string& name : vertex.value_names)
-        value.push_back(name == "heading" ? std::numbers::pi * unit(random) : place + 5 * unit(random));
+      for (const std::string& name : vertex.value_names) {
+        const bool is_place = vertex.value_units.empty() || vertex.value_units[value.size()] == "m";
+        value.push_back(name == "heading" ? std::numbers::pi * unit(random)
+                                          : (is_place ? place : 0) + 5 * unit(random));
+      }
       by_tag[tag].push_back(graph.add_vertex(vertex, VertexId(graph.vertex_count()), value));
     }
   }

@@ -223,6 +223,37 @@ TEST_CASE("graduation: a false closure beside the odometry of neighbours is foun
   }
 }
 
+TEST_CASE("graduation: a false closure into a tail is named, and not an edge of the tail") {
+  const TypeRegistry registry = full_registry();
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    INFO("seed " << seed);
+    std::mt19937_64 random(seed);
+    Spoiled spoiled;
+    std::vector<Pose2<double>> truth{{}};
+    for (int i = 1; i < 24; ++i)
+      truth.push_back(compose(truth.back(), se2_exp<double>(Eigen::Vector3d(1, 0, 0.4))));
+    for (int i = 0; i < 24; ++i) {
+      const Pose2<double>& pose = truth[static_cast<std::size_t>(i)];
+      spoiled.without.add_vertex<VertexSe2>(VertexId{i}, {pose.position[0], pose.position[1], pose.heading});
+    }
+    const auto join = [&](VertexIndex from, VertexIndex to) {
+      const Pose2<double> between_them =
+          between(truth[static_cast<std::size_t>(from)], truth[static_cast<std::size_t>(to)]);
+      spoiled.without.add_edge(EdgeSe2{noisy(between_them.vector(), 0.02, 0.005, random)}, {from, to},
+                               pose_information(0.02, 0.005));
+    };
+    for (VertexIndex i = 0; i + 1 < 24; ++i) join(i, i + 1);
+    join(0, 10);
+    join(2, 12);
+    join(4, 14);
+    spoiled.graph = spoiled.without;
+    spoil(spoiled, 3, 20, {3, -4, 1});
+    const Score score = graduate_and_score(spoiled, "tail", registry);
+    CHECK(score.result.outliers == spoiled.false_edges);
+    CHECK(score.result.distrusted.empty());
+  }
+}
+
 TEST_CASE(
     "graduation: a false closure that alone joins neighbours is trusted until the others contradict it") {
   const TypeRegistry registry = full_registry();

@@ -53,6 +53,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/robust/chi_square.hpp
   core/robust/edge_selection.hpp
   core/robust/graduation.hpp
+  core/robust/trust.hpp
   core/system/gauge.hpp
   core/system/normal_equations.hpp
   core/system/structure.hpp
@@ -107,6 +108,7 @@ set(WAYMARK_PUBLIC_HEADERS
   tools/drive/model/fuse.hpp
   tools/drive/model/minimize.hpp
   tools/drive/model/motion_runs.hpp
+  tools/drive/estimation/clock_drift.hpp
   tools/drive/estimation/noise.hpp
   tools/drive/model/place.hpp
   tools/drive/model/poses_at_fixes.hpp

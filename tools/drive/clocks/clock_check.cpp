@@ -138,14 +138,22 @@ std::string other_reason(const ClockOffset& offset, const PreparedDrive& drive) 
 void tell_clock(const ClockOffset& offset, const DriveLogs& logs, DriveDescription& description,
                 ClocksApart treatment, PreparedDrive& drive) {
   const bool moves = treatment == ClocksApart::move && is_another_clock(drive, offset);
+  const std::vector<std::string> told = drive.report.warnings;
+  const bool tells_late_quantity = drive.report.tells_late_quantity;
   if (moves) {
     OdometryConfig& odometry = config_of(drive.odometry_name, description);
     odometry.speed_delay_s += offset.late_s;
     odometry.yaw_rate_delay_s += offset.late_s;
     drive = prepare_drive(logs, description);
+    for (const std::string& warning : told)
+      if (std::find(drive.report.warnings.begin(), drive.report.warnings.end(), warning) ==
+          drive.report.warnings.end())
+        drive.report.warnings.push_back(warning);
   }
-  const std::string cure = moves ? "its stamps are moved by that; " + statement(offset)
-                                 : remedy(offset) + other_reason(offset, drive);
+  const std::string reason = moves ? std::string() : other_reason(offset, drive);
+  drive.report.tells_late_quantity = tells_late_quantity || !reason.empty();
+  const std::string cure =
+      moves ? "its stamps are moved by that; " + statement(offset) : remedy(offset) + reason;
   drive.report.warnings.push_back(clock_warning("the odometry", offset, cure));
 }
 

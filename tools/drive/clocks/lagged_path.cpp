@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/tools/drive/clocks/lag_search.hpp>
 #include <waymark/tools/drive/logs/time_series.hpp>
@@ -58,25 +60,32 @@ bool LaggedPath::is_measured(double from_s, double to_s) const {
 
 std::vector<Eigen::Vector2d> LaggedPath::antenna_at(std::span<const double> moments_s, const Errors& errors,
                                                     const Eigen::Vector2d& antenna_m) const {
+  const auto first = static_cast<std::size_t>(moments_s.front() / kRaster_s);
+  const auto last = std::min(distance_m_.size(), static_cast<std::size_t>(moments_s.back() / kRaster_s) + 2);
+  const double begin_s = static_cast<double>(first) * kRaster_s;
+  const auto heading_at = [&](double now_s) {
+    return (1 + errors.yaw_scale) * on_raster(turn_rad_, now_s + errors.yaw_rate_lag_s) -
+           errors.bias_radps * now_s;
+  };
   std::vector<double> x{0};
   std::vector<double> y{0};
-  double distance = on_raster(distance_m_, errors.speed_lag_s);
-  std::vector<double> heading{on_raster(turn_rad_, errors.yaw_rate_lag_s)};
-  for (std::size_t i = 1; i < distance_m_.size(); ++i) {
+  std::vector<double> heading{heading_at(begin_s)};
+  double distance = on_raster(distance_m_, begin_s + errors.speed_lag_s);
+  for (std::size_t i = first + 1; i < last; ++i) {
     const double now_s = static_cast<double>(i) * kRaster_s;
-    heading.push_back(on_raster(turn_rad_, now_s + errors.yaw_rate_lag_s) - errors.bias_radps * now_s);
+    const double before = heading.back();
+    heading.push_back(heading_at(now_s));
     const double until = on_raster(distance_m_, now_s + errors.speed_lag_s);
-    const double middle = 0.5 * (heading[i - 1] + heading[i]);
+    const double middle = 0.5 * (before + heading.back());
     x.push_back(x.back() + (until - distance) * std::cos(middle));
     y.push_back(y.back() + (until - distance) * std::sin(middle));
     distance = until;
   }
   std::vector<Eigen::Vector2d> places;
   for (const double moment_s : moments_s) {
-    const double angle = on_raster(heading, moment_s);
-    const Eigen::Vector2d arm(std::cos(angle) * antenna_m.x() - std::sin(angle) * antenna_m.y(),
-                              std::sin(angle) * antenna_m.x() + std::cos(angle) * antenna_m.y());
-    places.push_back(Eigen::Vector2d(on_raster(x, moment_s), on_raster(y, moment_s)) + arm);
+    const double since_s = moment_s - begin_s;
+    const Eigen::Vector2d arm = Eigen::Rotation2Dd(on_raster(heading, since_s)) * antenna_m;
+    places.push_back(Eigen::Vector2d(on_raster(x, since_s), on_raster(y, since_s)) + arm);
   }
   return places;
 }

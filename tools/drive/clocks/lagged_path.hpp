@@ -19,6 +19,7 @@ class LaggedPath {
     double speed_lag_s = 0;
     double yaw_rate_lag_s = 0;
     double bias_radps = 0;  ///< of the yaw rate
+    double yaw_scale = 0;   ///< true yaw rate = (1 + scale) reading - bias
   };
 
   /// @param odometry sorted, two samples at least
@@ -29,7 +30,8 @@ class LaggedPath {
   [[nodiscard]] double length_s() const { return length_s_; }
   /// Tells whether the odometry measured all the time: no gap, nothing assumed. @param from_s, to_s within the drive
   [[nodiscard]] bool is_measured(double from_s, double to_s) const;
-  /// Returns where the antenna was at some moments, in a frame of its own. @param antenna_m in the body frame
+  /// Returns where the antenna was at some moments, in a frame of their own. @param moments_s ascending, one at least,
+  /// within the drive @param antenna_m in the body frame
   [[nodiscard]] std::vector<Eigen::Vector2d> antenna_at(std::span<const double> moments_s,
                                                         const Errors& errors,
                                                         const Eigen::Vector2d& antenna_m) const;

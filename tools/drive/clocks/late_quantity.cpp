@@ -36,13 +36,30 @@ bool is_late_yaw_rate(const MotionLags& lags) {
          -lags.difference_s() > std::max(kLeastDifference_s, kLateDeviations * lags.difference_sigma_s());
 }
 
+/// Returns what lies in the middle of a drive, at most ten minutes: velocities know a lag to hundredths of a second by
+/// then.
+template <typename Sample>
+std::vector<Sample> middle_of(const std::vector<Sample>& samples, Stamp first, Stamp last) {
+  constexpr double kHalf_s = 300;
+  const double middle_s = 0.5 * seconds_between(first, last);
+  std::vector<Sample> within;
+  for (const Sample& sample : samples)
+    if (std::abs(seconds_between(first, sample.stamp) - middle_s) <= kHalf_s) within.push_back(sample);
+  return within;
+}
+
 /// Returns the lags against speeds and courses of a receiver that gives both. Receivers and wheels smooth, and not by the
 /// same time.
 std::optional<MotionLags> lags_by_velocity(const std::vector<OdometrySample>& odometry,
                                            const std::vector<Fix>& fixes) {
   constexpr double kFarthest_s = 1.5;
   constexpr double kFits = 0.8;  // correlation
-  const auto [speed, yaw_rate] = estimate_clock_offsets(odometry, fixes, {});
+  const Stamp first = odometry.front().stamp;
+  const Stamp last = odometry.back().stamp;
+  const std::vector<OdometrySample> readings = middle_of(odometry, first, last);
+  const std::vector<Fix> between = middle_of(fixes, first, last);
+  if (readings.size() < 2 || between.empty()) return std::nullopt;
+  const auto [speed, yaw_rate] = estimate_clock_offsets(readings, between, {});
   if (!speed || speed->against != "receiver's speed") return std::nullopt;
   if (!yaw_rate || yaw_rate->against != "receiver's course") return std::nullopt;
   if (std::min(speed->correlation, yaw_rate->correlation) < kFits) return std::nullopt;
@@ -52,13 +69,23 @@ std::optional<MotionLags> lags_by_velocity(const std::vector<OdometrySample>& od
   return MotionLags{speed->late_s, yaw_rate->late_s, sigma.cwiseAbs2().asDiagonal(), 0};
 }
 
-/// Adds the lags against one receiver, by its positions and by its velocity, if they are known well.
+/// Tells whether both quantities are so well known to be on the same clock that nothing else can say otherwise.
+bool excludes_lateness(const MotionLags& lags) {
+  constexpr double kDeviations = 3;
+  return std::abs(lags.difference_s()) + kDeviations * lags.difference_sigma_s() < kLeastDifference_s;
+}
+
+/// Adds the lags against one receiver, by its positions and by its velocity, if they are known well. The latter take
+/// much longer, and only where the former leave a doubt.
 void add_lags(const std::vector<OdometrySample>& odometry, const std::vector<Fix>& fixes, double arm_sigma_m,
               std::vector<MotionLags>& told) {
   constexpr double kPoor_s = 0.15;
-  for (const auto& lags : {estimate_motion_lags(odometry, of_one_receiver(fixes), arm_sigma_m),
-                           lags_by_velocity(odometry, fixes)})
+  const auto add = [&](const std::optional<MotionLags>& lags) {
     if (lags && lags->difference_sigma_s() < kPoor_s) told.push_back(*lags);
+  };
+  const auto by_position = estimate_motion_lags(odometry, of_one_receiver(fixes), arm_sigma_m);
+  add(by_position);
+  if (!by_position || !excludes_lateness(*by_position)) add(lags_by_velocity(odometry, fixes));
 }
 
 /// Returns what those say that are known best. Empty: nothing is known, or two contradict each other.
@@ -116,6 +143,7 @@ double& LateQuantity::delay_in(OdometryConfig& odometry) const {
 std::optional<LateQuantity> late_quantity_shown(const std::vector<OdometrySample>& odometry,
                                                 const std::vector<Fix>& fixes, const YawRateAtRest& rest) {
   constexpr double kUnstatedSigma_m = 1.5;
+  if (rest.stated_derived) return std::nullopt;
   const std::optional<MotionLags> lags = best_lags(odometry, fixes, kAntennaSigma_m);
   if (!lags) return std::nullopt;
   if (is_late_speed(*lags)) return with_other_on_time(LateQuantity::Kind::speed, *lags);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
+#include <utility>
 
 #include <Eigen/Dense>
 
@@ -17,7 +19,7 @@ constexpr double kLargestLag_s = 1.5;
 constexpr std::size_t kFewestWindows = 8;
 
 /// What is estimated.
-enum Unknown { speed_lag_s, yaw_rate_lag_s, scale, bias_radps, arm_m, kUnknowns };
+enum Unknown { speed_lag_s, yaw_rate_lag_s, scale, bias_radps, arm_m, yaw_scale, kUnknowns };
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 using Information = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 using PerFix = std::vector<Eigen::Vector2d>;  // of each fix, m
@@ -42,6 +44,7 @@ class WindowFit {
 
  private:
   void add(double moment_s, const Fix& fix);
+  /// @param way at the fixes of the window
   void lay(const Window& window, const PerFix& way, PerFix& residuals) const;
 
   LaggedPath path_;
@@ -51,6 +54,15 @@ class WindowFit {
   std::vector<double> weights_;
   std::vector<Window> windows_;
 };
+
+/// Keeps enough windows, at equal distances: a day tells no more of a lag than half an hour does.
+void thin(std::vector<WindowFit::Window>& windows) {
+  constexpr std::size_t kMost = 90;
+  if (windows.size() <= kMost) return;
+  std::vector<WindowFit::Window> kept;
+  for (std::size_t i = 0; i < kMost; ++i) kept.push_back(windows[i * windows.size() / kMost]);
+  windows = std::move(kept);
+}
 
 WindowFit::WindowFit(const std::vector<OdometrySample>& odometry, const std::vector<const Fix*>& fixes)
     : path_(odometry), antenna_m_(fixes.front()->antenna_m) {
@@ -63,6 +75,7 @@ WindowFit::WindowFit(const std::vector<OdometrySample>& odometry, const std::vec
       add(moment_s, *fix);
   }
   std::erase_if(windows_, [](const Window& window) { return window.end - window.first < kFewestFixes; });
+  thin(windows_);
   weights_.assign(places_.size(), 1.0);
 }
 
@@ -81,12 +94,16 @@ void WindowFit::add(double moment_s, const Fix& fix) {
 PerFix WindowFit::residuals(const Unknowns& unknowns) const {
   const double stretch = 1 + unknowns[scale];
   const Eigen::Vector2d antenna_m = antenna_m_ + Eigen::Vector2d(unknowns[arm_m], 0);
-  PerFix way =
-      path_.antenna_at(moments_s_, {unknowns[speed_lag_s], unknowns[yaw_rate_lag_s], unknowns[bias_radps]},
-                       antenna_m / stretch);
-  for (Eigen::Vector2d& place : way) place *= stretch;
+  const LaggedPath::Errors errors{unknowns[speed_lag_s], unknowns[yaw_rate_lag_s], unknowns[bias_radps],
+                                  unknowns[yaw_scale]};
   PerFix residuals(places_.size(), Eigen::Vector2d::Zero());
-  for (const Window& window : windows_) lay(window, way, residuals);
+  for (const Window& window : windows_) {
+    const std::span moments_s(moments_s_.begin() + static_cast<std::ptrdiff_t>(window.first),
+                              window.end - window.first);
+    PerFix way = path_.antenna_at(moments_s, errors, antenna_m / stretch);
+    for (Eigen::Vector2d& place : way) place *= stretch;
+    lay(window, way, residuals);
+  }
   return residuals;
 }
 
@@ -96,7 +113,7 @@ void WindowFit::lay(const Window& window, const PerFix& way, PerFix& residuals) 
   Eigen::Vector2d of_fixes = Eigen::Vector2d::Zero();
   for (std::size_t i = window.first; i < window.end; ++i) {
     weight += weights_[i];
-    of_way += weights_[i] * way[i];
+    of_way += weights_[i] * way[i - window.first];
     of_fixes += weights_[i] * places_[i];
   }
   of_way /= weight;
@@ -104,14 +121,14 @@ void WindowFit::lay(const Window& window, const PerFix& way, PerFix& residuals) 
   double along = 0;
   double across = 0;
   for (std::size_t i = window.first; i < window.end; ++i) {
-    const Eigen::Vector2d from = way[i] - of_way;
+    const Eigen::Vector2d from = way[i - window.first] - of_way;
     const Eigen::Vector2d to = places_[i] - of_fixes;
     along += weights_[i] * from.dot(to);
     across += weights_[i] * (from.x() * to.y() - from.y() * to.x());
   }
   const Eigen::Rotation2Dd turn(std::atan2(across, along));
   for (std::size_t i = window.first; i < window.end; ++i)
-    residuals[i] = places_[i] - of_fixes - turn * (way[i] - of_way);
+    residuals[i] = places_[i] - of_fixes - turn * (way[i - window.first] - of_way);
 }
 
 double WindowFit::usual(const PerFix& residuals) const {
@@ -132,7 +149,7 @@ void WindowFit::weigh(const PerFix& residuals) {
 
 /// Changes of the residuals with each unknown, by central differences.
 std::array<PerFix, kUnknowns> slopes_at(const WindowFit& fit, const Unknowns& unknowns) {
-  const Unknowns steps(0.05, 0.05, 0.01, 0.0005, 0.2);
+  const Unknowns steps{{0.05, 0.05, 0.01, 0.0005, 0.2, 0.01}};
   std::array<PerFix, kUnknowns> slopes;
   for (int k = 0; k < kUnknowns; ++k) {
     const Unknowns step = steps[k] * Unknowns::Unit(k);
@@ -189,7 +206,7 @@ std::optional<MotionLags> estimate_motion_lags(const std::vector<OdometrySample>
   if (odometry.size() < 2 || fixes.empty()) return std::nullopt;
   WindowFit fit(odometry, fixes);
   if (fit.windows().size() < kFewestWindows) return std::nullopt;
-  const Unknowns prior_sigma(1e3, 1e3, 0.2, 0.1, arm_sigma_m);
+  const Unknowns prior_sigma{{1e3, 1e3, 0.2, 0.1, arm_sigma_m, 0.2}};
   const Information prior = prior_sigma.cwiseAbs2().cwiseInverse().asDiagonal();
   // What it costs to know the spread from few windows.
   const auto windows = static_cast<double>(fit.windows().size());

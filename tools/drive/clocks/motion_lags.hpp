@@ -29,8 +29,8 @@ struct MotionLags {
   [[nodiscard]] double difference_sigma_s() const;
 };
 
-/// Least squares with Cauchy's loss over speed lag, yaw rate lag, scale of the speed, bias of the yaw rate and place
-/// of the antenna, from positions at least 0.9 s apart. The covariance is that of the sums over windows (sandwich):
+/// Least squares with Cauchy's loss over speed lag, yaw rate lag, scales of both, bias of the yaw rate and place
+/// of the antenna, from positions at least 0.9 s apart in 90 windows at most. The covariance is that of the sums over windows (sandwich):
 /// errors of the fixes may be correlated within 20 s. Lags beyond 1.5 s are none of this kind.
 /// @param odometry sorted, two samples at least
 /// @param fixes of one receiver, sorted by stamp

@@ -95,6 +95,7 @@ ReckonedFixes without_error(ReckonedFixes receiver, const YawError& error) {
     const double since_s = seconds_between(receiver.fixes.front().stamp, receiver.fixes[i].stamp);
     return bent[i][2] * (1 / error.factor - 1) - error.bias_radps * since_s;
   };
+  if (!bent.empty()) receiver.antenna[0][2] += turned_at(0);
   for (std::size_t i = 1; i < bent.size(); ++i) {
     const Eigen::Vector2d step = bent[i].head<2>() - bent[i - 1].head<2>();
     receiver.antenna[i].head<2>() =

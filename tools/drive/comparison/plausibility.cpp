@@ -206,6 +206,7 @@ Shape shape_of(const ReckonedFixes& receiver) {
   YawError error;
   if (factor_of_turns) {
     shape.turn_factor = error.factor = factor_of_turns->value;
+    shape.contradicts = size.has_value();
     shape.sentences.push_back(in_words(*factor_of_turns));
   }
   error.bias_radps = bias_of(legs_of(without_error(receiver, error)));
@@ -249,6 +250,7 @@ void name_slips(const ReckonedFixes& receiver, const GeodeticPoint& place, Shape
     return;
   }
   shape.sentences = {"the odometry does not fit the fixes, but it does if " + words};
+  shape.turn_factor.reset();
   shape.spoils_jumps = true;
 }
 
@@ -341,9 +343,9 @@ ComparedWithFixes compare_odometry_with_fixes(std::span<const Fix> fixes,
   const ReckonedFixes receiver = of_receiver(live, reckoned, first);
   Shape shape = shape_of(receiver);
   compared.speed_factor = shape.speed_factor;
-  compared.turn_factor = shape.turn_factor;
   const std::vector<std::string> known = odometry.empty() ? std::vector<std::string>() : shape.sentences;
   if (place && !shape.sentences.empty()) name_slips(receiver, *place, shape);
+  compared.turn_factor = shape.turn_factor;
   for (const std::string& sentence : shape.sentences)
     if (std::find(known.begin(), known.end(), sentence) == known.end())
       warnings.push_back((odometry.empty() ? "" : odometry + ": ") + sentence);

@@ -72,7 +72,8 @@ struct FusionSettings {
   friend bool operator==(const FusionSettings&, const FusionSettings&) = default;
 };
 
-/// Returns the meaning of `calibration: on`: all states that the built-in plugins know.
+/// Returns the meaning of `calibration: on`: bias, scale and delay. Further states are added where the drive shows that
+/// they are needed (yaw_per_speed, yaw_scale).
 [[nodiscard]] Options default_calibration();
 
 /// Completes the settings with the defaults of the modeling. A complete error model

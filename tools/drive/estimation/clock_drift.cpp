@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -15,7 +16,7 @@
 namespace waymark::drive {
 namespace {
 
-constexpr double kLargest = 2e-4;
+constexpr double kLargest = 3e-4;
 
 /// A coarse drive whose fixes are moved along the way, as a drift would have moved them.
 class DriftedDrive {
@@ -30,7 +31,7 @@ class DriftedDrive {
       moved_m_.push_back(seconds_between(fixes.front().stamp, fixes[i].stamp) * velocity_at(i));
   }
 
-  /// Returns the least half chi2 over the states.
+  /// Returns the least half chi2 over the states; NaN if it was not reached.
   [[nodiscard]] double cost_at(double rate) {
     PlacedDrive moved = coarse_.drive;
     for (std::size_t i = 0; i < moved_m_.size(); ++i) moved.fixes[i].position += rate * moved_m_[i];
@@ -43,7 +44,7 @@ class DriftedDrive {
     const auto algorithm = registry_.make_algorithm("dogleg");
     const Summary summary = optimize(graph_, solver, *algorithm, {});
     if (between_) between_();
-    return 0.5 * summary.final_chi2;
+    return summary.converged() ? 0.5 * summary.final_chi2 : std::numeric_limits<double>::quiet_NaN();
   }
 
   [[nodiscard]] std::size_t fixes() const { return moved_m_.size(); }

@@ -23,7 +23,7 @@ struct ClockDrift {
 /// it.
 ///
 /// It is a proposal, and the evidence decides: probable at 3 sigmas (1.5 if it moves a fix by three of its accuracies,
-/// because noise was then found in its place), if it is what quartzes do (5 to 200 ppm). Empty where it would move no
+/// because noise was then found in its place), if it is what quartzes do (5 to 300 ppm). Empty where it would move no
 /// fix by a tenth of its accuracy, so that it does not matter.
 /// @param placed with the time offsets of its fixes @param settings with the noise
 /// @param between called between its fusions; what it throws ends the search. Empty: nothing is called

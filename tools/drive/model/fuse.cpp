@@ -175,8 +175,15 @@ void refuse_misreading(const PlacedDrive& placed) {
   throw InputError(of_several(placed) + placed.misreading);
 }
 
+/// Returns the options of the model of an odometry, with its calibration.
+Options odometry_options(const std::string& source, const FusionSettings& decision,
+                         const TypeRegistry& registry) {
+  const FusionSettings own = for_relative(decision, source);
+  return with_calibration(own.odometry_options, own, registry.odometry_model(own.odometry_model).options);
+}
+
 /// Widens the prior of a scale of the odometry that gives the nodes, which is that of a sound one, to what the fixes
-/// show, unless it is stated.
+/// show, unless it is stated or the scale is not calibrated.
 /// @param factor of the distances or turns of the odometry
 /// @param name of the state
 void widen_prior(double factor, const std::string& name, const char* what, const TypeRegistry& registry,
@@ -184,12 +191,12 @@ void widen_prior(double factor, const std::string& name, const char* what, const
   if (factor == 1 || !is_scale(factor)) return;
   const std::string prior = name + "_sigma";
   const PlacedDrive& placed = modeled.placed;
-  const FusionSettings own = for_relative(decision, placed.odometry_name);
-  const OdometryModelType& type = registry.odometry_model(own.odometry_model);
-  if (!has_option(type.options, prior)) return;
-  if (with_calibration(own.odometry_options, own, type.options).contains(prior)) return;
-  const auto source = decision.sources.find(placed.odometry_name);
-  Options& options = source == decision.sources.end() ? decision.odometry_options : source->second.options;
+  const Options stated = odometry_options(placed.odometry_name, decision, registry);
+  const auto state = stated.find(name);
+  if (state == stated.end() || state->second == "off" || stated.contains(prior)) return;
+  const bool is_one_of_several = !placed.relative.empty() || decision.sources.contains(placed.odometry_name);
+  Options& options =
+      is_one_of_several ? decision.sources[placed.odometry_name].options : decision.odometry_options;
   options[prior] = shortest(std::abs(1 / factor - 1));
   modeled.notes.push_back(fmt::format("{}{} is taken as {:.2g}, because the {} differ by that",
                                       of_several(placed), prior, std::abs(1 / factor - 1), what));
@@ -204,7 +211,11 @@ void adapt_to_scales(bool by_default, FusionSettings& decision, const TypeRegist
   widen_prior(placed.speed_factor.value_or(1), "speed_scale", "distances", registry, decision, modeled);
   const std::string model = for_relative(decision, placed.odometry_name).odometry_model;
   if (!placed.turn_factor || !has_option(registry.odometry_model(model).options, kYawScale)) return;
-  if (by_default && !decision.calibration->empty()) decision.calibration->try_emplace(kYawScale, "constant");
+  if (by_default && !decision.calibration->empty()) {
+    Options& calibration =
+        placed.relative.empty() ? *decision.calibration : decision.sources[placed.odometry_name].calibration;
+    calibration.try_emplace(kYawScale, "constant");
+  }
   widen_prior(*placed.turn_factor, kYawScale, "turns", registry, decision, modeled);
 }
 
@@ -292,7 +303,8 @@ ModeledDrive Fusion::estimated_from(PlacedDrive placed, const FusionSettings& se
   ModeledDrive modeled;
   FusionSettings decision = decision_on(settings);
   modeled.placed = std::move(placed);
-  adapt_to_scales(!settings.calibration, decision, registry_, modeled);
+  const bool by_default = !settings.calibration || *settings.calibration == default_calibration();
+  adapt_to_scales(by_default, decision, registry_, modeled);
   if (modeled.placed.start.follows_fixes) (void)leave_out_unseen(settings, decision, modeled);
   TimeOffsetSearch delays(modeled.placed, drive_.sensors, registry_, between_);
   const auto offsets = estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
@@ -340,7 +352,8 @@ ModeledDrive Fusion::on_clock_of_fixes(ModeledDrive modeled, const FusionSetting
   constexpr double kGain = 2;  // little, because clocks do drift
   constexpr int kMostRounds = 3;
   const bool has_one_clock = drive_.relative.empty() && drive_.sensors.empty();
-  if (!has_one_clock || modeled.noise.parameters.empty()) return modeled;
+  if (!has_one_clock || modeled.noise.parameters.empty() || modeled.decision.calibration->empty())
+    return modeled;
   if (modeled.noise.is_poor_odometry(modeled.placed.odometry_name)) return modeled;
   ClockDrift drift;
   for (int round = 0; round < kMostRounds; ++round) {

@@ -214,8 +214,12 @@ std::vector<Eigen::Vector3d> reckoned_antenna(const Timeline& timeline, const Pl
 
 /// Returns the drive with the turns that the vehicle made, as far as the fixes show by what factor they were read.
 Timeline with_true_turns(Timeline timeline, const PlacedDrive& placed) {
-  for (Interval& interval : timeline.intervals)
-    if (!interval.bridged) interval.yaw_rate_radps /= placed.turn_factor.value_or(1);
+  const double factor = placed.turn_factor.value_or(1);
+  for (Interval& interval : timeline.intervals) {
+    if (interval.bridged) continue;
+    interval.yaw_rate_radps /= factor;
+    interval.yaw_rate_change_radps /= factor;
+  }
   return timeline;
 }
 

@@ -32,6 +32,7 @@ struct Fault {
   double yaw_rate_late_s = 0;
   double fixes_late_s = 0;
   double antenna_ahead_m = 0;  ///< of where it is stated
+  double yaw_factor = 1;       ///< of the readings of the gyro
 };
 
 struct Readings {
@@ -62,7 +63,7 @@ Readings drive_with(const Fault& fault, double noise_m, double length_s = 1200) 
     const Stamp stamp{static_cast<std::int64_t>(i) * 10'000'000};
     if (i % 4 == 0)
       readings.odometry.push_back({stamp, kScale * speed_of(t - fault.speed_late_s),
-                                   kBias_radps + yaw_rate_of(t - fault.yaw_rate_late_s)});
+                                   kBias_radps + fault.yaw_factor * yaw_rate_of(t - fault.yaw_rate_late_s)});
     if (i % 100 == 0) {
       Fix fix;
       fix.stamp = stamp.later(fault.fixes_late_s);
@@ -138,6 +139,18 @@ TEST_CASE("late quantity: a sound odometry, one clock for both, late fixes and f
 TEST_CASE("late quantity: an antenna ahead of where it is stated is no late yaw rate") {
   // At 5 m/s in the bends 2 m are 0.4 s.
   CHECK_FALSE(drive_with({.antenna_ahead_m = 2}, 0.02).late());
+}
+
+TEST_CASE("late quantity: a gyro of a wrong scale is no late speed, and hides none") {
+  for (const double factor : {0.9, 1.1, 1.2}) {
+    INFO("turns " << factor << " times those of the vehicle");
+    CHECK_FALSE(drive_with({.yaw_factor = factor}, 0.02).late());
+    CHECK_FALSE(drive_with({.yaw_factor = factor}, 1).late());
+    const auto late = drive_with({.speed_late_s = 0.4, .yaw_factor = factor}, 0.5).late();
+    REQUIRE(late);
+    CHECK(late->kind == LateQuantity::Kind::speed);
+    CHECK(late->late_s == Approx(0.4).margin(0.02 + 3 * late->sigma_s));
+  }
 }
 
 TEST_CASE("late quantity: a drive without bends tells nothing of the yaw rate") {
