@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/detail/median.hpp>
-#include <waymark/tools/drive/comparison/chords.hpp>
 #include <waymark/tools/drive/estimation/latency.hpp>
 #include <waymark/tools/drive/estimation/noise_spread.hpp>
+#include <waymark/tools/drive/estimation/scale_priors.hpp>
 #include <waymark/tools/drive/model/build.hpp>
 #include <waymark/tools/drive/model/provenance.hpp>
 
@@ -175,50 +175,6 @@ void refuse_misreading(const PlacedDrive& placed) {
   throw InputError(of_several(placed) + placed.misreading);
 }
 
-/// Returns the options of the model of an odometry, with its calibration.
-Options odometry_options(const std::string& source, const FusionSettings& decision,
-                         const TypeRegistry& registry) {
-  const FusionSettings own = for_relative(decision, source);
-  return with_calibration(own.odometry_options, own, registry.odometry_model(own.odometry_model).options);
-}
-
-/// Widens the prior of a scale of the odometry that gives the nodes, which is that of a sound one, to what the fixes
-/// show, unless it is stated or the scale is not calibrated.
-/// @param factor of the distances or turns of the odometry
-/// @param name of the state
-void widen_prior(double factor, const std::string& name, const char* what, const TypeRegistry& registry,
-                 FusionSettings& decision, ModeledDrive& modeled) {
-  if (factor == 1 || !is_scale(factor)) return;
-  const std::string prior = name + "_sigma";
-  const PlacedDrive& placed = modeled.placed;
-  const Options stated = odometry_options(placed.odometry_name, decision, registry);
-  const auto state = stated.find(name);
-  if (state == stated.end() || state->second == "off" || stated.contains(prior)) return;
-  const bool is_one_of_several = !placed.relative.empty() || decision.sources.contains(placed.odometry_name);
-  Options& options =
-      is_one_of_several ? decision.sources[placed.odometry_name].options : decision.odometry_options;
-  options[prior] = shortest(std::abs(1 / factor - 1));
-  modeled.notes.push_back(fmt::format("{}{} is taken as {:.2g}, because the {} differ by that",
-                                      of_several(placed), prior, std::abs(1 / factor - 1), what));
-}
-
-/// Adapts the calibration of the odometry that gives the nodes to scales that the fixes show.
-/// @param by_default nobody stated what is calibrated: the scale of turns is, too, if it must be
-void adapt_to_scales(bool by_default, FusionSettings& decision, const TypeRegistry& registry,
-                     ModeledDrive& modeled) {
-  constexpr const char* kYawScale = "yaw_scale";
-  const PlacedDrive& placed = modeled.placed;
-  widen_prior(placed.speed_factor.value_or(1), "speed_scale", "distances", registry, decision, modeled);
-  const std::string model = for_relative(decision, placed.odometry_name).odometry_model;
-  if (!placed.turn_factor || !has_option(registry.odometry_model(model).options, kYawScale)) return;
-  if (by_default && !decision.calibration->empty()) {
-    Options& calibration =
-        placed.relative.empty() ? *decision.calibration : decision.sources[placed.odometry_name].calibration;
-    calibration.try_emplace(kYawScale, "constant");
-  }
-  widen_prior(*placed.turn_factor, kYawScale, "turns", registry, decision, modeled);
-}
-
 /// Adapts the settings to the yaw rate of each relative source.
 void adapt(const PreparedDrive& drive, bool by_default, FusionSettings& decision,
            const TypeRegistry& registry) {
@@ -304,7 +260,8 @@ ModeledDrive Fusion::estimated_from(PlacedDrive placed, const FusionSettings& se
   FusionSettings decision = decision_on(settings);
   modeled.placed = std::move(placed);
   const bool by_default = !settings.calibration || *settings.calibration == default_calibration();
-  adapt_to_scales(by_default, decision, registry_, modeled);
+  for (std::string& note : adapt_to_scales(modeled.placed, by_default, registry_, decision))
+    modeled.notes.push_back(std::move(note));
   if (modeled.placed.start.follows_fixes) (void)leave_out_unseen(settings, decision, modeled);
   TimeOffsetSearch delays(modeled.placed, drive_.sensors, registry_, between_);
   const auto offsets = estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
