@@ -7,7 +7,8 @@
 #include <span>
 #include <utility>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/tools/drive/clocks/lagged_path.hpp>
