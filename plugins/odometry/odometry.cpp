@@ -146,21 +146,15 @@ std::vector<OptionInfo> options() {
       {"standstill_largest_variance", "1e-5", "m^2, rad^2", OptionRange{1e-9, 1},
        "largest variance of an edge at rest, so that its information is at least 1e5"},
   };
-  for (const OptionInfo& option :
-       state_options("gyro_bias", "rad/s", "off", "0.01", "2e-6", "reading of the gyro at rest"))
-    all.push_back(option);
-  for (const OptionInfo& option : state_options("speed_scale", "1", "off", "0.01", "2e-4",
-                                                "scale error of the speed, true speed = (1 "
-                                                "+ scale) reading"))
-    all.push_back(option);
-  for (const OptionInfo& option :
-       state_options("yaw_per_speed", "rad/m", "off", "1e-3", "1e-5",
-                     "error of a yaw rate from wheels or steering, true yaw rate = reading - this * speed"))
-    all.push_back(option);
-  for (const OptionInfo& option :
-       state_options("yaw_scale", "1", "off", "0.01", "1e-4",
-                     "scale error of the yaw rate, true yaw rate = (1 + scale) reading"))
-    all.push_back(option);
+  for (const std::vector<OptionInfo>& state :
+       {state_options("gyro_bias", "rad/s", "off", "0.01", "2e-6", "reading of the gyro at rest"),
+        state_options("speed_scale", "1", "off", "0.01", "2e-4",
+                      "scale error of the speed, true speed = (1 + scale) reading"),
+        state_options("yaw_per_speed", "rad/m", "off", "1e-3", "1e-5",
+                      "error of a yaw rate from wheels or steering, true yaw rate = reading - this * speed"),
+        state_options("yaw_scale", "1", "off", "0.01", "1e-4",
+                      "scale error of the yaw rate, true yaw rate = (1 + scale) reading")})
+    all.insert(all.end(), state.begin(), state.end());
   all.push_back(
       {kTrackSigma, "0.2", "m", OptionRange{1e-3, 100},
        "how far the track of a further relative source is beside that of the first one, to and fro, "

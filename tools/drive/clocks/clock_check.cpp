@@ -134,27 +134,29 @@ std::string other_reason(const ClockOffset& offset, const PreparedDrive& drive) 
       offset.late_s);
 }
 
+/// What was found about the only odometry. It is told once nothing is moved any more: a drive that is prepared again
+/// has a report of its own.
+struct Found {
+  std::vector<std::string> warnings;
+  bool tells_late_quantity = false;  ///< as PrepareReport has it
+};
+
 /// Moves the stamps of the only odometry to another clock, or tells it.
-void tell_clock(const ClockOffset& offset, const DriveLogs& logs, DriveDescription& description,
-                ClocksApart treatment, PreparedDrive& drive) {
-  const bool moves = treatment == ClocksApart::move && is_another_clock(drive, offset);
-  const std::vector<std::string> told = drive.report.warnings;
-  const bool tells_late_quantity = drive.report.tells_late_quantity;
-  if (moves) {
+void treat_clock(const ClockOffset& offset, const DriveLogs& logs, DriveDescription& description,
+                 ClocksApart treatment, PreparedDrive& drive, Found& found) {
+  std::string cure;
+  if (treatment == ClocksApart::move && is_another_clock(drive, offset)) {
     OdometryConfig& odometry = config_of(drive.odometry_name, description);
     odometry.speed_delay_s += offset.late_s;
     odometry.yaw_rate_delay_s += offset.late_s;
     drive = prepare_drive(logs, description);
-    for (const std::string& warning : told)
-      if (std::find(drive.report.warnings.begin(), drive.report.warnings.end(), warning) ==
-          drive.report.warnings.end())
-        drive.report.warnings.push_back(warning);
+    cure = "its stamps are moved by that; " + statement(offset);
+  } else {
+    const std::string reason = other_reason(offset, drive);
+    found.tells_late_quantity |= !reason.empty();
+    cure = remedy(offset) + reason;
   }
-  const std::string reason = moves ? std::string() : other_reason(offset, drive);
-  drive.report.tells_late_quantity = tells_late_quantity || !reason.empty();
-  const std::string cure =
-      moves ? "its stamps are moved by that; " + statement(offset) : remedy(offset) + reason;
-  drive.report.warnings.push_back(clock_warning("the odometry", offset, cure));
+  found.warnings.push_back(clock_warning("the odometry", offset, cure));
 }
 
 /// Moves the readings of a quantity that is late alone, until it no longer is: what a late speed seems to contradict was
@@ -179,19 +181,19 @@ LateQuantity move_late_quantity(LateQuantity late, const DriveLogs& logs, DriveD
 /// the fixes do. @returns the odometry without it
 std::vector<OdometrySample> without_late_quantity(const LateQuantity& late, const DriveLogs& logs,
                                                   DriveDescription& description, ClocksApart treatment,
-                                                  PreparedDrive& drive) {
+                                                  PreparedDrive& drive, Found& found) {
   const bool moves =
       treatment == ClocksApart::move && !states_delays(config_of(drive.odometry_name, description));
   if (moves) {
     const LateQuantity moved = move_late_quantity(late, logs, description, drive);
-    drive.report.warnings.push_back(
+    found.warnings.push_back(
         late_quantity_warning("the odometry", moved,
                               fmt::format("its readings are moved by that; state '{}: {:.2f}' for 'odometry'",
                                           moved.key(), moved.late_s)));
     return drive.odometry;
   }
-  drive.report.tells_late_quantity = true;
-  drive.report.warnings.push_back(late_quantity_warning("the odometry", late, late.increase()));
+  found.tells_late_quantity = true;
+  found.warnings.push_back(late_quantity_warning("the odometry", late, late.increase()));
   return without_lateness(drive.odometry, late);
 }
 
@@ -203,9 +205,13 @@ PreparedDrive with_clock_told(PreparedDrive drive, const DriveLogs& logs, DriveD
   const bool is_far = offset && std::abs(offset->late_s) > kOneClock_s;
   const auto late =
       is_far ? std::nullopt : late_quantity_shown(drive.odometry, drive.fixes, drive.yaw_rate_at_rest);
+  Found found;
   if (late)
-    offset = offset_shown(without_late_quantity(*late, logs, description, treatment, drive), drive.fixes);
-  if (offset) tell_clock(*offset, logs, description, treatment, drive);
+    offset =
+        offset_shown(without_late_quantity(*late, logs, description, treatment, drive, found), drive.fixes);
+  if (offset) treat_clock(*offset, logs, description, treatment, drive, found);
+  drive.report.tells_late_quantity = found.tells_late_quantity;
+  for (std::string& warning : found.warnings) drive.report.warnings.push_back(std::move(warning));
   return drive;
 }
 

@@ -147,8 +147,7 @@ void add_shape(const PreparedOdometry& source, const std::vector<Fix>& receiver,
     verdict.contradicts = true;
     return;
   }
-  const std::vector<Eigen::Vector3d> poses = dead_reckon(timeline, Eigen::Vector3d::Zero(), kStands_mps);
-  const Shape shape = compare_shapes(receiver, antenna_at_fixes(timeline, poses, receiver));
+  const Shape shape = compare_shapes(receiver, reckoned_antenna(timeline, receiver, kStands_mps));
   for (const std::string& sentence : shape.sentences)
     verdict.sentences.push_back(source.name + ": " + sentence);
   verdict.contradicts = shape.contradicts;

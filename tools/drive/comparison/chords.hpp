@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <waymark/core/drive/sample.hpp>
+#include <waymark/tools/drive/nodes/timeline.hpp>
 
 namespace waymark::drive {
 
@@ -51,13 +52,7 @@ struct ChordPair {
 /// Returns the bias of the odometry's yaw rate that the chords show in the median, rad/s; 0 for few.
 [[nodiscard]] double bias_of(std::span<const ChordPair> chords);
 
-/// How a yaw rate errs: the true one is reading / factor - bias.
-struct YawError {
-  double factor = 1;
-  double bias_radps = 0;
-};
-
-/// Returns the fixes beside the odometry without such an error: what lies between two fixes is turned as a whole.
+/// Returns the fixes beside the odometry without an error of its yaw rate: what lies between two fixes is turned as a whole.
 [[nodiscard]] ReckonedFixes without_error(ReckonedFixes receiver, const YawError& error);
 
 /// A turn from one chord to the next.

@@ -83,8 +83,10 @@ class ReckonedDrive {
  public:
   ReckonedDrive(const Timeline& timeline, std::span<const Fix> fixes, double standstill_mps)
       : timeline_(timeline), fixes_(fixes), standstill_mps_(standstill_mps) {
-    for (const double factor : kYawFactors) legs_[factor] = legs_of(reckoned({.factor = factor}));
-    calibrated_ = legs_of(reckoned(error_of_yaw_rates()));
+    const ReckonedFixes as_read = reckoned({});
+    for (const double factor : kYawFactors)
+      legs_[factor] = legs_of(factor == 1 ? as_read : reckoned({.factor = factor}));
+    calibrated_ = legs_of(reckoned(error_of_yaw_rates(as_read)));
   }
 
   /// @param length place in kLegs_m
@@ -98,14 +100,8 @@ class ReckonedDrive {
 
  private:
   [[nodiscard]] ReckonedFixes reckoned(const YawError& error) const {
-    Timeline other = timeline_;
-    for (Interval& interval : other.intervals) {
-      if (interval.bridged) continue;  // by the motion of the fixes, which is in the right unit
-      interval.yaw_rate_radps = interval.yaw_rate_radps / error.factor - error.bias_radps;
-      interval.yaw_rate_change_radps /= error.factor;
-    }
-    const std::vector<Eigen::Vector3d> poses = dead_reckon(other, Eigen::Vector3d::Zero(), standstill_mps_);
-    return of_receiver(fixes_, antenna_at_fixes(other, poses, fixes_), fixes_.front().source);
+    const Timeline other = without_error(timeline_, error);
+    return of_receiver(fixes_, reckoned_antenna(other, fixes_, standstill_mps_), fixes_.front().source);
   }
 
   static Legs legs_of(const ReckonedFixes& receiver) {
@@ -117,11 +113,9 @@ class ReckonedDrive {
     return legs;
   }
 
-  [[nodiscard]] YawError error_of_yaw_rates() const {
-    const ReckonedFixes as_read = reckoned({});
+  static YawError error_of_yaw_rates(const ReckonedFixes& as_read) {
     const std::optional<TurnFactor> factor = turn_factor(as_read);
-    if (!factor) return {.bias_radps = bias_of(legs_.at(1).front())};
-    const YawError scale{.factor = factor->value};
+    const YawError scale{.factor = factor ? factor->value : 1};
     return {scale.factor, bias_of(legs_of(without_error(as_read, scale)).front())};
   }
 

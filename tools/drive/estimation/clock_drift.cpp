@@ -6,10 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/linear/block_cholesky.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
-#include <waymark/core/system/gauge.hpp>
 #include <waymark/tools/drive/estimation/coarse.hpp>
 #include <waymark/tools/drive/model/build.hpp>
 
@@ -25,7 +23,7 @@ class DriftedDrive {
                const std::function<void()>& between)
       : coarse_(std::move(coarse)), settings_(settings), registry_(registry), between_(between) {
     (void)cost_at(0);
-    keep_poses();
+    keep_poses(graph_, coarse_);
     const std::vector<Fix>& fixes = coarse_.drive.fixes;
     for (std::size_t i = 0; i < fixes.size(); ++i)
       moved_m_.push_back(seconds_between(fixes.front().stamp, fixes[i].stamp) * velocity_at(i));
@@ -39,10 +37,8 @@ class DriftedDrive {
     if (!moved_m_.empty()) graph.set_values(graph_.values());
     graph_ = std::move(graph);
     BlockCholesky cholesky;
-    StructuredSolver solver{cholesky};
-    solver.build(graph_, find_gauge(graph_).held);
     const auto algorithm = registry_.make_algorithm("dogleg");
-    const Summary summary = optimize(graph_, solver, *algorithm, {});
+    const Summary summary = optimize(graph_, *algorithm, cholesky, {});
     if (between_) between_();
     return summary.converged() ? 0.5 * summary.final_chi2 : std::numeric_limits<double>::quiet_NaN();
   }
@@ -57,14 +53,6 @@ class DriftedDrive {
   }
 
  private:
-  void keep_poses() {
-    std::vector<Eigen::Vector3d>& poses = coarse_.drive.start.poses;
-    for (std::size_t node = 0; node < poses.size(); ++node) {
-      const auto value = graph_.value(static_cast<VertexIndex>(node));
-      poses[node] = {value[0], value[1], value[2]};
-    }
-  }
-
   [[nodiscard]] Eigen::Vector2d velocity_at(std::size_t fix) const {
     const Timeline& timeline = coarse_.drive.timeline;
     const std::size_t node = timeline.fix_node[fix];

@@ -279,6 +279,14 @@ CoarseDrive coarsen(const PlacedDrive& placed, std::span<const PreparedSensor> s
   return result;
 }
 
+void keep_poses(const Graph& graph, CoarseDrive& coarse) {
+  std::vector<Eigen::Vector3d>& poses = coarse.drive.start.poses;
+  for (std::size_t node = 0; node < poses.size(); ++node) {
+    const auto value = graph.value(static_cast<VertexIndex>(node));
+    poses[node] = {value[0], value[1], value[2]};
+  }
+}
+
 PreparedSensor thinned(const PreparedSensor& sensor, double period_s) {
   constexpr double kOneReading_s = 1e-3;
   std::optional<Stamp> last;

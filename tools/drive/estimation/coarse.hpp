@@ -1,6 +1,7 @@
 /// A drive with fewer nodes and fewer fixes. It is precise enough to estimate the noise.
 #pragma once
 
+#include <waymark/core/graph/graph.hpp>
 #include <waymark/tools/drive/model/place.hpp>
 
 namespace waymark::drive {
@@ -20,6 +21,9 @@ struct CoarseDrive {
 /// that is kept, and every quarter of a second there is such a node if there is a reading.
 [[nodiscard]] CoarseDrive coarsen(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                                   double fix_period_s = 7.5, double node_period_s = 1);
+
+/// Takes the poses of a graph that was built of the drive: the nodes are its first vertices.
+void keep_poses(const Graph& graph, CoarseDrive& coarse);
 
 /// Returns a sensor with readings that lie a period apart (a tenth less, for jitter). Rows within a millisecond
 /// are one reading.

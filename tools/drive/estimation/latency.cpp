@@ -21,14 +21,6 @@ constexpr int kMostRounds = 10;
 /// At 30 m/s and 0.5 rad/s the edge is then wrong by 0.2 mm.
 constexpr double kSettled_s = 0.005;
 
-/// Takes the poses of the nodes, the first vertices of the graph.
-void keep_poses(const Graph& graph, std::vector<Eigen::Vector3d>& poses) {
-  for (std::size_t node = 0; node < poses.size(); ++node) {
-    const auto value = graph.value(static_cast<VertexIndex>(node));
-    poses[node] = {value[0], value[1], value[2]};
-  }
-}
-
 double prior_sigma_of(const FusionSettings& settings, const TypeRegistry& registry) {
   constexpr const char* kOption = "time_offset_sigma";
   const GnssModelingType& type = registry.gnss_modeling(settings.modeling);
@@ -122,7 +114,7 @@ std::vector<std::optional<TimeOffset>> TimeOffsetSearch::find(const FusionSettin
     solver.build(round.graph, find_gauge(round.graph).held);
     optimize(round.graph, solver, *algorithm, {});
     if (between_) between_();
-    keep_poses(round.graph, coarse_.drive.start.poses);
+    keep_poses(round.graph, coarse_);
     const double moved_s = take_offsets(round, coarse_.drive);
     if (moved_s < kSettled_s || count == kMostRounds) {
       placed.time_offsets_s = coarse_.drive.time_offsets_s;

@@ -37,8 +37,8 @@ std::optional<std::string> widen_prior(double factor, const std::string& name, c
                                                          : decision.odometry_options;
   const double sigma = std::abs(1 / factor - 1);
   options[prior] = shortest(sigma);
-  return fmt::format("{}{} is taken as {:.2g}, because the {} differ by that",
-                     placed.runs.empty() ? "" : placed.odometry_name + ": ", prior, sigma, what);
+  return fmt::format("{}{} is taken as {:.2g}, because the {} differ by that", of_several(placed), prior,
+                     sigma, what);
 }
 
 void calibrate_yaw_scale(const PlacedDrive& placed, const TypeRegistry& registry, FusionSettings& decision) {

@@ -53,11 +53,6 @@ std::string of_several(const AbsoluteGroup& group, const ModeledDrive& modeled) 
   return modeled.placed.receivers.size() > 1 ? group.name + ": " : std::string();
 }
 
-/// The same for the odometry that gives the nodes.
-std::string of_several(const PlacedDrive& placed) {
-  return placed.runs.empty() ? std::string() : placed.odometry_name + ": ";
-}
-
 /// Takes the fixes of a group as measured when their stamps say.
 void leave_out(const AbsoluteGroup& group, FusionSettings& settings, ModeledDrive& modeled) {
   if (modeled.placed.receivers.size() > 1 || settings.sources.contains(group.name)) {

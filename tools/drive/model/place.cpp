@@ -35,6 +35,10 @@ std::string receiver_name(const PlacedDrive& placed, int source) {
   return index < placed.receivers.size() ? placed.receivers[index] : "gnss";
 }
 
+std::string of_several(const PlacedDrive& placed) {
+  return placed.runs.empty() ? std::string() : placed.odometry_name + ": ";
+}
+
 namespace {
 
 /// Takes the sources and the fixes.
@@ -206,23 +210,6 @@ void compare_with_fixes(const PreparedDrive& drive, std::span<const Eigen::Vecto
   for (std::string& warning : compared.warnings) placed.warnings.push_back(std::move(warning));
 }
 
-std::vector<Eigen::Vector3d> reckoned_antenna(const Timeline& timeline, const PlacedDrive& placed) {
-  const std::vector<Eigen::Vector3d> poses =
-      dead_reckon(timeline, Eigen::Vector3d::Zero(), placed.standstill_mps);
-  return antenna_at_fixes(timeline, poses, placed.fixes);
-}
-
-/// Returns the drive with the turns that the vehicle made, as far as the fixes show by what factor they were read.
-Timeline with_true_turns(Timeline timeline, const PlacedDrive& placed) {
-  const double factor = placed.turn_factor.value_or(1);
-  for (Interval& interval : timeline.intervals) {
-    if (interval.bridged) continue;
-    interval.yaw_rate_radps /= factor;
-    interval.yaw_rate_change_radps /= factor;
-  }
-  return timeline;
-}
-
 }  // namespace
 
 PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, const FusionSettings& settings,
@@ -244,10 +231,15 @@ PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, co
     return placed;
   }
   placed.warnings = drive.report.warnings;
-  compare_with_fixes(drive, reckoned_antenna(timeline, placed), placed);
-  const Timeline turned = with_true_turns(timeline, placed);
-  placed.gate =
-      apply_gate(placed.fixes, reckoned_antenna(turned, placed), gates_of(placed, settings, registry));
+  std::vector<Eigen::Vector3d> antenna = reckoned_antenna(timeline, placed.fixes, placed.standstill_mps);
+  compare_with_fixes(drive, antenna, placed);
+  std::optional<Timeline> mended;  // the turns that the vehicle made
+  if (placed.turn_factor) {
+    mended = without_error(timeline, {.factor = *placed.turn_factor});
+    antenna = reckoned_antenna(*mended, placed.fixes, placed.standstill_mps);
+  }
+  const Timeline& turned = mended ? *mended : timeline;
+  placed.gate = apply_gate(placed.fixes, antenna, gates_of(placed, settings, registry));
   require_accepted_fix(placed.gate);
   if (std::string warning = warning_of(placed.gate); !warning.empty())
     placed.warnings.push_back(std::move(warning));

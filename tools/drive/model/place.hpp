@@ -58,6 +58,9 @@ struct PlacedDrive {
 /// Returns the name of an absolute source; "gnss" if none is known.
 [[nodiscard]] std::string receiver_name(const PlacedDrive& placed, int source);
 
+/// Returns what precedes a sentence about the odometry that gives the nodes: its name, if there are several.
+[[nodiscard]] std::string of_several(const PlacedDrive& placed);
+
 /// Runs the gate and computes the initial guess.
 /// @param timeline of this drive
 /// @param settings from decided()

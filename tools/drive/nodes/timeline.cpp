@@ -209,4 +209,18 @@ std::vector<Eigen::Vector3d> antenna_at_fixes(const Timeline& timeline,
   return antennas;
 }
 
+std::vector<Eigen::Vector3d> reckoned_antenna(const Timeline& timeline, std::span<const Fix> fixes,
+                                              double standstill_mps) {
+  return antenna_at_fixes(timeline, dead_reckon(timeline, Eigen::Vector3d::Zero(), standstill_mps), fixes);
+}
+
+Timeline without_error(Timeline timeline, const YawError& error) {
+  for (Interval& interval : timeline.intervals) {
+    if (interval.bridged) continue;
+    interval.yaw_rate_radps = interval.yaw_rate_radps / error.factor - error.bias_radps;
+    interval.yaw_rate_change_radps /= error.factor;
+  }
+  return timeline;
+}
+
 }  // namespace waymark::drive

@@ -74,5 +74,18 @@ struct Timeline {
 [[nodiscard]] std::vector<Eigen::Vector3d> antenna_at_fixes(const Timeline& timeline,
                                                             std::span<const Eigen::Vector3d> poses,
                                                             std::span<const Fix> fixes);
+/// Returns the same of a drive that is dead-reckoned from the origin.
+[[nodiscard]] std::vector<Eigen::Vector3d> reckoned_antenna(const Timeline& timeline,
+                                                            std::span<const Fix> fixes,
+                                                            double standstill_mps);
+
+/// How a yaw rate errs: the true one is reading / factor - bias.
+struct YawError {
+  double factor = 1;
+  double bias_radps = 0;
+};
+
+/// Returns a drive without such an error. Bridged intervals stay: the motion of the fixes is in them.
+[[nodiscard]] Timeline without_error(Timeline timeline, const YawError& error);
 
 }  // namespace waymark::drive
