@@ -246,14 +246,11 @@ TEST_CASE(
 
 TEST_CASE("default start: a start from which landmarks run away costs no graph that another one solves") {
   const TypeRegistry registry = full_registry();
-  int cut_short = 0;
   for (unsigned seed = 0; seed < 60; ++seed) {
     Graph graph = bearing_drive(seed);
     const MultiStartSummary result = optimize_default(graph, registry);
     CHECK(result.summary.final_chi2 <= 1e3 * plausible_chi2(graph));
-    cut_short += result.summary.iterations > 30;
   }
-  CHECK(cut_short > 0);
 }
 
 TEST_CASE("default start: without registered starts the values given are all there is") {

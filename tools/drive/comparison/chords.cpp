@@ -30,6 +30,29 @@ double difference_with(double factor, std::span<const TurnPair> turns) {
   return sum / static_cast<double>(turns.size());
 }
 
+/// By how much the odometry turns more from one chord to the next, and the time and the way of that.
+struct TurnApart {
+  double turn_rad = 0;
+  double duration_s = 0;
+  double way_m = 0;
+};
+
+/// A constant rate of such turns, and what it leaves of them in the median.
+struct Rate {
+  Median rate;
+  double left_rad = 0;
+};
+
+/// @param of what the rate is by
+Rate rate_of(std::span<const TurnApart> turns, double TurnApart::*of) {
+  std::vector<double> rates;
+  for (const TurnApart& turn : turns) rates.push_back(turn.turn_rad / turn.*of);
+  const Median rate = median_with_sigma(std::move(rates));
+  std::vector<double> left;
+  for (const TurnApart& turn : turns) left.push_back(std::abs(turn.turn_rad - rate.value * turn.*of));
+  return {rate, upper_median(std::move(left))};
+}
+
 }  // namespace
 
 ReckonedFixes of_receiver(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna, int source) {
@@ -79,28 +102,48 @@ double turns_apart(const ChordPair& one, const ChordPair& next) {
   return wrap_angle(angle_between(one.odometry, next.odometry) - angle_between(one.gnss, next.gnss));
 }
 
-double bias_of(std::span<const ChordPair> chords) {
+bool YawBias::is_large() const {
+  constexpr double kSigmas = 5;
+  constexpr double kOfTime_radps = 0.01;
+  constexpr double kOfWay_radpm = 0.001;
+  return sigmas > kSigmas && (std::abs(radps) > kOfTime_radps || std::abs(radpm) > kOfWay_radpm);
+}
+
+YawBias bias_of(std::span<const ChordPair> chords) {
   constexpr std::size_t kFewest = 10;
-  std::vector<double> biases;
-  for (std::size_t i = 1; i < chords.size(); ++i)
-    if (chords[i].follows)
-      biases.push_back(turns_apart(chords[i - 1], chords[i]) /
-                       (0.5 * (chords[i - 1].duration_s + chords[i].duration_s)));
-  return biases.size() < kFewest ? 0 : median_with_sigma(std::move(biases)).value;
+  constexpr double kLeast_m = 1e-3;
+  std::vector<TurnApart> turns;
+  for (std::size_t i = 1; i < chords.size(); ++i) {
+    const ChordPair& one = chords[i - 1];
+    const ChordPair& next = chords[i];
+    if (!next.follows) continue;
+    turns.push_back({turns_apart(one, next), 0.5 * (one.duration_s + next.duration_s),
+                     std::max(kLeast_m, 0.5 * (one.odometry.norm() + next.odometry.norm()))});
+  }
+  if (turns.size() < kFewest) return {};
+  const Rate of_time = rate_of(turns, &TurnApart::duration_s);
+  const Rate of_way = rate_of(turns, &TurnApart::way_m);
+  const auto sigmas = [](const Median& rate) { return std::abs(rate.value) / rate.sigma; };
+  if (of_way.left_rad < of_time.left_rad) return {.radpm = of_way.rate.value, .sigmas = sigmas(of_way.rate)};
+  return {.radps = of_time.rate.value, .sigmas = sigmas(of_time.rate)};
 }
 
 ReckonedFixes without_error(ReckonedFixes receiver, const YawError& error) {
   const std::vector<Eigen::Vector3d> bent = receiver.antenna;
-  const auto turned_at = [&](std::size_t i) {
+  double way_m = 0;
+  double turned = 0;  // at the previous fix
+  for (std::size_t i = 0; i < bent.size(); ++i) {
+    const Eigen::Vector2d step = bent[i].head<2>() - bent[i == 0 ? 0 : i - 1].head<2>();
+    const bool is_forward = rotate(-bent[i][2], step).x() >= 0;
+    way_m += is_forward ? step.norm() : -step.norm();
     const double since_s = seconds_between(receiver.fixes.front().stamp, receiver.fixes[i].stamp);
-    return bent[i][2] * (1 / error.factor - 1) - error.bias_radps * since_s;
-  };
-  if (!bent.empty()) receiver.antenna[0][2] += turned_at(0);
-  for (std::size_t i = 1; i < bent.size(); ++i) {
-    const Eigen::Vector2d step = bent[i].head<2>() - bent[i - 1].head<2>();
-    receiver.antenna[i].head<2>() =
-        receiver.antenna[i - 1].head<2>() + rotate(0.5 * (turned_at(i - 1) + turned_at(i)), step);
-    receiver.antenna[i][2] = bent[i][2] + turned_at(i);
+    const double turns =
+        bent[i][2] * (1 / error.factor - 1) - error.bias_radps * since_s - error.bias_radpm * way_m;
+    if (i > 0)
+      receiver.antenna[i].head<2>() =
+          receiver.antenna[i - 1].head<2>() + rotate(0.5 * (turned + turns), step);
+    receiver.antenna[i][2] = bent[i][2] + turns;
+    turned = turns;
   }
   return receiver;
 }

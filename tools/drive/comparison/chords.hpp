@@ -49,8 +49,20 @@ struct ChordPair {
 /// chords themselves, whatever the headings along them.
 [[nodiscard]] double turns_apart(const ChordPair& one, const ChordPair& next);
 
-/// Returns the bias of the odometry's yaw rate that the chords show in the median, rad/s; 0 for few.
-[[nodiscard]] double bias_of(std::span<const ChordPair> chords);
+/// A constant by which the odometry turns more than the fixes: of time or of the way, whichever the chords fit better.
+struct YawBias {
+  double radps = 0;
+  double radpm = 0;
+  double sigmas = 0;  ///< how significant it is
+
+  /// Whether poses that are reckoned with it are bent, so that they cannot be compared with fixes.
+  [[nodiscard]] bool is_large() const;
+
+  /// Returns it with a factor.
+  [[nodiscard]] YawError with(double factor) const { return {factor, radps, radpm}; }
+};
+/// Returns the bias that the chords show in the median; none for few.
+[[nodiscard]] YawBias bias_of(std::span<const ChordPair> chords);
 
 /// Returns the fixes beside the odometry without an error of its yaw rate: what lies between two fixes is turned as a whole.
 [[nodiscard]] ReckonedFixes without_error(ReckonedFixes receiver, const YawError& error);

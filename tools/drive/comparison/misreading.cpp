@@ -115,8 +115,8 @@ class ReckonedDrive {
 
   static YawError error_of_yaw_rates(const ReckonedFixes& as_read) {
     const std::optional<TurnFactor> factor = turn_factor(as_read);
-    const YawError scale{.factor = factor ? factor->value : 1};
-    return {scale.factor, bias_of(legs_of(without_error(as_read, scale)).front())};
+    const double scale = factor ? factor->value : 1;
+    return bias_of(legs_of(without_error(as_read, {.factor = scale})).front()).with(scale);
   }
 
   const Timeline& timeline_;

@@ -203,28 +203,29 @@ Shape shape_of(const ReckonedFixes& receiver) {
   // Turns of another size distort all lengths, and lengths of another unit all differences of them.
   if (size && !factor_of_turns) return {{in_words(*size)}, true, true};
   Shape shape;
-  YawError error;
+  const double factor = factor_of_turns ? factor_of_turns->value : 1;
   if (factor_of_turns) {
-    shape.turn_factor = error.factor = factor_of_turns->value;
+    shape.turn_factor = factor;
     shape.contradicts = size.has_value();
     shape.sentences.push_back(in_words(*factor_of_turns));
   }
-  error.bias_radps = bias_of(legs_of(without_error(receiver, error)));
-  const ReckonedFixes straight = without_error(receiver, error);
+  const YawBias bias = bias_of(legs_of(without_error(receiver, {.factor = factor})));
+  if (bias.is_large()) shape.yaw_bias = bias;
+  const ReckonedFixes straight = without_error(receiver, bias.with(factor));
   const std::vector<double> ways = way_factors(straight);
   const std::vector<double> chords = chord_factors(straight);
   if (std::string sign = sign_of_turns(turns); !sign.empty()) {
     shape.sentences.push_back(std::move(sign));
     shape.contradicts = true;
   }
-  if (std::string factor = large_factor(ways, shape.speed_factor); !factor.empty()) {
-    shape.sentences.push_back(std::move(factor));
+  if (std::string sentence = large_factor(ways, shape.speed_factor); !sentence.empty()) {
+    shape.sentences.push_back(std::move(sentence));
     shape.contradicts = true;
     shape.spoils_jumps = true;
   } else {
-    factor = chords.size() >= kFewestChords ? small_factor(chords, shape.speed_factor)
-                                            : rough_factor(ways, shape.speed_factor);
-    if (!factor.empty()) shape.sentences.push_back(std::move(factor));
+    sentence = chords.size() >= kFewestChords ? small_factor(chords, shape.speed_factor)
+                                              : rough_factor(ways, shape.speed_factor);
+    if (!sentence.empty()) shape.sentences.push_back(std::move(sentence));
   }
   return shape;
 }
@@ -251,6 +252,7 @@ void name_slips(const ReckonedFixes& receiver, const GeodeticPoint& place, Shape
   }
   shape.sentences = {"the odometry does not fit the fixes, but it does if " + words};
   shape.turn_factor.reset();
+  shape.yaw_bias.reset();
   shape.spoils_jumps = true;
 }
 
@@ -346,16 +348,17 @@ ComparedWithFixes compare_odometry_with_fixes(std::span<const Fix> fixes,
   const std::vector<std::string> known = odometry.empty() ? std::vector<std::string>() : shape.sentences;
   if (place && !shape.sentences.empty()) name_slips(receiver, *place, shape);
   compared.turn_factor = shape.turn_factor;
+  compared.yaw_bias = shape.yaw_bias;
   for (const std::string& sentence : shape.sentences)
     if (std::find(known.begin(), known.end(), sentence) == known.end())
       warnings.push_back((odometry.empty() ? "" : odometry + ": ") + sentence);
   if (shape.spoils_jumps) return compared;
-  const YawError scale{.factor = shape.turn_factor.value_or(1)};
-  for (std::string& jump : jumps_in_words(without_error(receiver, scale)))
+  const YawError error = shape.yaw_bias.value_or(YawBias()).with(shape.turn_factor.value_or(1));
+  for (std::string& jump : jumps_in_words(without_error(receiver, error)))
     warnings.push_back(std::move(jump));
   for (int source = 0; source < std::ssize(receivers); ++source) {
     if (source == first) continue;
-    for (const std::string& jump : jumps_in_words(without_error(of_receiver(live, reckoned, source), scale)))
+    for (const std::string& jump : jumps_in_words(without_error(of_receiver(live, reckoned, source), error)))
       warnings.push_back(receivers[static_cast<std::size_t>(source)] + ": " + jump);
   }
   return compared;

@@ -11,6 +11,7 @@
 
 #include <waymark/core/drive/drive_context.hpp>
 #include <waymark/core/drive/sample.hpp>
+#include <waymark/tools/drive/comparison/chords.hpp>
 
 namespace waymark::drive {
 
@@ -18,6 +19,7 @@ struct ComparedWithFixes {
   std::vector<std::string> warnings;
   std::optional<double> speed_factor{};  ///< as Shape::speed_factor
   std::optional<double> turn_factor{};   ///< as Shape::turn_factor
+  std::optional<YawBias> yaw_bias{};     ///< as Shape::yaw_bias
 };
 
 /// Returns one sentence for each suspicious fact:
@@ -50,6 +52,7 @@ struct Shape {
   /// of the odometry's distances, if it is significant and beyond the prior of speed_scale
   std::optional<double> speed_factor{};
   std::optional<double> turn_factor{};  ///< of the odometry's turns, if it is significant (turn_factor.hpp)
+  std::optional<YawBias> yaw_bias{};    ///< what is left of them, if it is large
 };
 /// Compares turns and distances alone. @param fixes of one receiver @param antenna as above
 [[nodiscard]] Shape compare_shapes(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna);

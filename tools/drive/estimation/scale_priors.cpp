@@ -12,6 +12,7 @@ namespace {
 
 constexpr const char* kSpeedScale = "speed_scale";
 constexpr const char* kYawScale = "yaw_scale";
+constexpr const char* kYawPerSpeed = "yaw_per_speed";
 
 bool is_one_of_several(const PlacedDrive& placed, const FusionSettings& decision) {
   return !placed.relative.empty() || decision.sources.contains(placed.odometry_name);
@@ -24,30 +25,42 @@ Options odometry_options(const PlacedDrive& placed, const FusionSettings& decisi
   return with_calibration(own.odometry_options, own, registry.odometry_model(own.odometry_model).options);
 }
 
-/// @param factor of the distances or turns of the odometry @param name of the state
-std::optional<std::string> widen_prior(double factor, const std::string& name, const char* what,
-                                       const PlacedDrive& placed, const TypeRegistry& registry,
-                                       FusionSettings& decision) {
-  if (factor == 1 || !is_scale(factor)) return std::nullopt;
-  const std::string prior = name + "_sigma";
+/// An error of the odometry that the fixes show.
+struct ShownError {
+  const char* state;  ///< that calibrates it
+  double size;        ///< in the unit of the state
+  const char* what;   ///< differs by that
+};
+
+/// Returns that of a scale. @param factor of the distances or turns of the odometry
+ShownError of_scale(const char* state, double factor, const char* what) {
+  return {state, is_scale(factor) ? std::abs(1 / factor - 1) : 0, what};
+}
+
+/// Makes an error the sigma of its prior.
+std::optional<std::string> widen_prior(const ShownError& error, const PlacedDrive& placed,
+                                       const TypeRegistry& registry, FusionSettings& decision) {
+  if (error.size == 0) return std::nullopt;
+  const std::string prior = std::string(error.state) + "_sigma";
   const Options stated = odometry_options(placed, decision, registry);
-  const auto state = stated.find(name);
+  const auto state = stated.find(error.state);
   if (state == stated.end() || state->second == "off" || stated.contains(prior)) return std::nullopt;
   Options& options = is_one_of_several(placed, decision) ? decision.sources[placed.odometry_name].options
                                                          : decision.odometry_options;
-  const double sigma = std::abs(1 / factor - 1);
-  options[prior] = shortest(sigma);
+  options[prior] = shortest(error.size);
   return fmt::format("{}{} is taken as {:.2g}, because the {} differ by that", of_several(placed), prior,
-                     sigma, what);
+                     error.size, error.what);
 }
 
-void calibrate_yaw_scale(const PlacedDrive& placed, const TypeRegistry& registry, FusionSettings& decision) {
+/// @param state that is off by default
+void calibrate(const std::string& state, const PlacedDrive& placed, const TypeRegistry& registry,
+               FusionSettings& decision) {
   const std::string model = for_relative(decision, placed.odometry_name).odometry_model;
-  if (!has_option(registry.odometry_model(model).options, kYawScale)) return;
+  if (!has_option(registry.odometry_model(model).options, state)) return;
   Options& calibration = is_one_of_several(placed, decision)
                              ? decision.sources[placed.odometry_name].calibration
                              : *decision.calibration;
-  calibration.try_emplace(kYawScale, "constant");
+  calibration.try_emplace(state, "constant");
 }
 
 }  // namespace
@@ -55,14 +68,20 @@ void calibrate_yaw_scale(const PlacedDrive& placed, const TypeRegistry& registry
 std::vector<std::string> adapt_to_scales(const PlacedDrive& placed, bool by_default,
                                          const TypeRegistry& registry, FusionSettings& decision) {
   std::vector<std::string> notes;
-  const auto widen = [&](double factor, const char* name, const char* what) {
-    if (auto note = widen_prior(factor, name, what, placed, registry, decision))
-      notes.push_back(*std::move(note));
+  const bool may_calibrate = by_default && !decision.calibration->empty();
+  const auto widen = [&](const ShownError& error) {
+    if (auto note = widen_prior(error, placed, registry, decision)) notes.push_back(*std::move(note));
   };
-  widen(placed.speed_factor.value_or(1), kSpeedScale, "distances");
-  if (!placed.turn_factor) return notes;
-  if (by_default && !decision.calibration->empty()) calibrate_yaw_scale(placed, registry, decision);
-  widen(*placed.turn_factor, kYawScale, "turns");
+  widen(of_scale(kSpeedScale, placed.speed_factor.value_or(1), "distances"));
+  if (placed.turn_factor) {
+    if (may_calibrate) calibrate(kYawScale, placed, registry, decision);
+    widen(of_scale(kYawScale, *placed.turn_factor, "turns"));
+  }
+  constexpr double kUsual_radpm = 1e-3;  // of two wheels 1.5 m apart, one is larger by 1.5 thousandths
+  if (placed.yaw_bias && std::abs(placed.yaw_bias->radpm) > kUsual_radpm) {
+    if (may_calibrate) calibrate(kYawPerSpeed, placed, registry, decision);
+    widen({kYawPerSpeed, std::abs(placed.yaw_bias->radpm), "turns per metre"});
+  }
   return notes;
 }
 

@@ -207,6 +207,7 @@ void compare_with_fixes(const PreparedDrive& drive, std::span<const Eigen::Vecto
       of_selected<Eigen::Vector3d>(placed.fixes, antenna, is_used), place, placed.receivers, of_several);
   placed.speed_factor = compared.speed_factor;
   placed.turn_factor = compared.turn_factor;
+  placed.yaw_bias = compared.yaw_bias;
   for (std::string& warning : compared.warnings) placed.warnings.push_back(std::move(warning));
 }
 
@@ -234,8 +235,9 @@ PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, co
   std::vector<Eigen::Vector3d> antenna = reckoned_antenna(timeline, placed.fixes, placed.standstill_mps);
   compare_with_fixes(drive, antenna, placed);
   std::optional<Timeline> mended;  // the turns that the vehicle made
-  if (placed.turn_factor) {
-    mended = without_error(timeline, {.factor = *placed.turn_factor});
+  if (placed.turn_factor || placed.yaw_bias) {
+    mended =
+        without_error(timeline, placed.yaw_bias.value_or(YawBias()).with(placed.turn_factor.value_or(1)));
     antenna = reckoned_antenna(*mended, placed.fixes, placed.standstill_mps);
   }
   const Timeline& turned = mended ? *mended : timeline;

@@ -15,6 +15,7 @@
 #include <Eigen/Core>
 
 #include <waymark/core/registry/registry.hpp>
+#include <waymark/tools/drive/comparison/chords.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/model/motion_runs.hpp>
@@ -44,6 +45,7 @@ struct PlacedDrive {
   std::set<std::string> left_out{};          ///< names of sources that others contradict
   std::optional<double> speed_factor{};      ///< of the odometry, far from 1 (Shape::speed_factor)
   std::optional<double> turn_factor{};       ///< the same of its turns (Shape::turn_factor)
+  std::optional<YawBias> yaw_bias{};         ///< of its yaw rate, if it is large (Shape::yaw_bias)
   std::string misreading{};                  ///< also a warning; Fusion::model() refuses such a drive
   std::optional<FirstPose> first_pose{};     ///< as PreparedDrive::first_pose
   /// what plugins may know of the whole drive; null: nothing

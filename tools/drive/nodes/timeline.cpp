@@ -217,8 +217,10 @@ std::vector<Eigen::Vector3d> reckoned_antenna(const Timeline& timeline, std::spa
 Timeline without_error(Timeline timeline, const YawError& error) {
   for (Interval& interval : timeline.intervals) {
     if (interval.bridged) continue;
-    interval.yaw_rate_radps = interval.yaw_rate_radps / error.factor - error.bias_radps;
-    interval.yaw_rate_change_radps /= error.factor;
+    interval.yaw_rate_radps =
+        interval.yaw_rate_radps / error.factor - error.bias_radps - error.bias_radpm * interval.speed_mps;
+    interval.yaw_rate_change_radps =
+        interval.yaw_rate_change_radps / error.factor - error.bias_radpm * interval.speed_change_mps;
   }
   return timeline;
 }

@@ -79,10 +79,11 @@ struct Timeline {
                                                             std::span<const Fix> fixes,
                                                             double standstill_mps);
 
-/// How a yaw rate errs: the true one is reading / factor - bias.
+/// How a yaw rate errs: the true one is reading / factor - bias_radps - bias_radpm * speed.
 struct YawError {
   double factor = 1;
-  double bias_radps = 0;
+  double bias_radps = 0;  ///< of a gyro
+  double bias_radpm = 0;  ///< of wheels that differ in size, or of a steering wheel that is not straight
 };
 
 /// Returns a drive without such an error. Bridged intervals stay: the motion of the fixes is in them.

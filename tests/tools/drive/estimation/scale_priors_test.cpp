@@ -39,6 +39,23 @@ TEST_CASE("scale priors: both scales get the errors that the fixes show") {
   CHECK(notes[1] == "yaw_scale_sigma is taken as 0.25, because the turns differ by that");
 }
 
+TEST_CASE(
+    "scale priors: a bias of the way, as of unequal wheels, is calibrated with a prior as wide as it is") {
+  PlacedDrive placed = placed_with(1, 1);
+  placed.turn_factor.reset();
+  placed.yaw_bias = YawBias{.radpm = -0.004, .sigmas = 20};
+  FusionSettings settings = settings_with(default_calibration());
+  const auto notes = adapt_to_scales(placed, true, registry(), settings);
+  CHECK(settings.calibration->at("yaw_per_speed") == "constant");
+  CHECK(settings.odometry_options.at("yaw_per_speed_sigma") == "0.004");
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0] == "yaw_per_speed_sigma is taken as 0.004, because the turns per metre differ by that");
+  placed.yaw_bias = YawBias{.radps = 0.03, .sigmas = 20};  // a gyro's
+  settings = settings_with(default_calibration());
+  CHECK(adapt_to_scales(placed, true, registry(), settings).empty());
+  CHECK_FALSE(settings.calibration->contains("yaw_per_speed"));
+}
+
 TEST_CASE("scale priors: what is stated stays, and a state that is not calibrated has no prior") {
   FusionSettings stated = settings_with({{"gyro_bias", "constant"}, {"speed_scale", "off"}});
   CHECK(adapt_to_scales(placed_with(1.25, 0.8), false, registry(), stated).empty());
