@@ -272,7 +272,9 @@ ModeledDrive Fusion::estimated_from(PlacedDrive placed, const FusionSettings& se
 
 std::optional<ModeledDrive> Fusion::along_fixes(const PlacedDrive& usual, const FusionSettings& settings,
                                                 const ModeledDrive& modeled) {
-  constexpr double kClearly = 1;
+  // Where both are nearly as probable, a result that follows the fixes costs little if the odometry was sound after all;
+  // one that follows a poor odometry may be anywhere.
+  constexpr double kEven = -2;
   constexpr double kNearly = -20;    // against a sound odometry it is hundreds
   constexpr double kOfAnother = 10;  // less is the same minimum without a delay
   if (usual.fixes.empty() || settings.initial_guess != StartOptions()) return std::nullopt;
@@ -285,7 +287,7 @@ std::optional<ModeledDrive> Fusion::along_fixes(const PlacedDrive& usual, const 
   const bool is_poor = other.noise.is_poor_odometry(usual.odometry_name);
   // Few fixes of a dead odometry fit receivers that are tens of metres wrong as well; those are rarer.
   const bool spares_fixes = is_poor && modeled.noise.fixes_are_poor() && !other.noise.fixes_are_poor();
-  const double least = spares_fixes ? kNearly : is_poor ? kClearly : kOfAnother;
+  const double least = spares_fixes ? kNearly : is_poor ? kEven : kOfAnother;
   if (!(gain > least)) return std::nullopt;
   return other;
 }
