@@ -1,9 +1,14 @@
 #include <limits>
+#include <map>
+#include <utility>
 
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/linear/detail/information_root.hpp>
 #include <waymark/core/robust/edge_selection.hpp>
+#include <waymark/core/system/detail/components.hpp>
+#include <waymark/core/system/detail/incidence.hpp>
 #include <waymark/core/system/gauge.hpp>
+#include <waymark/core/system/held_marks.hpp>
 #include <waymark/core/system/normal_equations.hpp>
 
 namespace waymark {
@@ -96,6 +101,71 @@ std::vector<double> innovations(const Graph& graph, std::span<const EdgePlace> e
     const bool checked = membership == Membership::outside || spread[0] > 1e-9 * spread[root.rows() - 1];
     const Eigen::VectorXd along = directions.transpose() * (root * e);
     if (checked) result[i] = along.cwiseAbs2().cwiseQuotient(spread).sum();
+  }
+  return result;
+}
+
+namespace {
+
+/// The parts of a graph that its edges join, and that further edges would join.
+class Parts {
+ public:
+  explicit Parts(const Graph& graph)
+      : graph_(graph), part_(detail::find_components(graph)), motions_(graph.vertex_count(), 0) {
+    const std::vector<char> held = find_gauge(graph, PartlyAnchored::hold_vertex).held;
+    const std::vector<char> has_edge = vertices_with_edges(graph);
+    for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+      if (graph.fixed(v)) continue;
+      int& motions = motions_[at(part_[at(v)])];
+      if (has_edge[at(v)] == 0)
+        motions = graph.vertex_type(v).tangent_size;
+      else if (is_wholly_held(held[at(v)]))
+        motions = kOfPoses;
+    }
+  }
+
+  /// Joins the parts of two vertices, if one of them may be moved so that an error becomes zero.
+  /// @param dimension of the error
+  bool join(std::span<const VertexIndex> vertices, int dimension) {
+    if (vertices.size() != 2) return false;
+    std::int32_t moved = part_of(vertices[0]);
+    std::int32_t stays = part_of(vertices[1]);
+    if (moved == stays) return false;
+    if (motions_of(moved) == 0 || (motions_of(stays) > 0 && motions_of(stays) < motions_of(moved)))
+      std::swap(moved, stays);
+    if (motions_of(moved) == 0 || dimension < motions_of(moved)) return false;
+    joined_[moved] = stays;
+    return true;
+  }
+
+ private:
+  static constexpr int kOfPoses = 3;
+  static constexpr std::int32_t kFixed = -1;  // all fixed vertices
+
+  static std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+  [[nodiscard]] std::int32_t part_of(VertexIndex v) const {
+    std::int32_t part = graph_.fixed(v) ? kFixed : part_[at(v)];
+    for (auto to = joined_.find(part); to != joined_.end(); to = joined_.find(part)) part = to->second;
+    return part;
+  }
+  /// Returns how many motions of a part nothing stops; 0: it is anchored.
+  [[nodiscard]] int motions_of(std::int32_t part) const { return part == kFixed ? 0 : motions_[at(part)]; }
+
+  const Graph& graph_;
+  std::vector<std::int32_t> part_;  // per vertex
+  std::vector<int> motions_;        // per part
+  std::map<std::int32_t, std::int32_t> joined_;
+};
+
+}  // namespace
+
+std::vector<EdgePlace> joining_edges(const Graph& graph, std::span<const EdgePlace> edges,
+                                     const Graph& kept) {
+  Parts parts(kept);
+  std::vector<EdgePlace> result;
+  for (const EdgePlace place : edges) {
+    const EdgeBatchBase& batch = graph.batch(place.batch);
+    if (parts.join(batch.vertices(place.edge), batch.error_dimension(place.edge))) result.push_back(place);
   }
   return result;
 }

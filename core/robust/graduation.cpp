@@ -74,6 +74,7 @@ class Graduation {
   void cross_examine();
   Verdict optimize_without(std::vector<EdgePlace> outliers);
   std::vector<EdgePlace> most_accused(std::span<const EdgePlace> edges, const Verdict& verdict);
+  std::vector<EdgePlace> joining(const Verdict& verdict, const Graph& kept) const;
   std::vector<EdgePlace> still_out(const Verdict& verdict, std::vector<EdgePlace>& returned);
   Summary count(Summary summary) {
     result_.iterations += summary.iterations;
@@ -221,19 +222,32 @@ Verdict Graduation::optimize_without(std::vector<EdgePlace> outliers) {
   return verdict;
 }
 
+// Returns the edges without which a split falls apart, although nothing contradicts them; trusted ones are preferred.
+std::vector<EdgePlace> Graduation::joining(const Verdict& verdict, const Graph& kept) const {
+  std::vector<EdgePlace> edges = verdict.outliers;
+  std::stable_partition(edges.begin(), edges.end(),
+                        [&](EdgePlace place) { return options_.trusted(graph_, place); });
+  std::vector<EdgePlace> result = joining_edges(graph_, edges, kept);
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
 // Returns the edges that are outside after this minimum. Edges inside that exceed the bound go out.
-// Edges outside whose innovation is within it come in, each of them once; the other ones would
-// raise the minimum by more than they cost outside.
+// Edges outside that join what falls apart, or whose innovation is within the bound, come in, each of them once; the
+// other ones would raise the minimum by more than they cost outside.
 std::vector<EdgePlace> Graduation::still_out(const Verdict& verdict, std::vector<EdgePlace>& returned) {
   const Graph kept = without_edges(graph_, verdict.outliers);
   const std::vector<double> innovation =
       innovations(graph_, verdict.outliers, Membership::outside, kept, solver_);
+  const std::vector<EdgePlace> joins = joining(verdict, kept);
   std::vector<EdgePlace> out;
   for (std::size_t i = 0; i < verdict.outliers.size(); ++i) {
     const EdgePlace place = verdict.outliers[i];
     const auto known = std::lower_bound(returned.begin(), returned.end(), place);
     const bool was_back = known != returned.end() && *known == place;
-    if (was_back || !(innovation[i] <= price(place))) {
+    const bool comes_in =
+        innovation[i] <= price(place) || std::binary_search(joins.begin(), joins.end(), place);
+    if (was_back || !comes_in) {
       out.push_back(place);
     } else {
       returned.insert(known, place);

@@ -347,6 +347,45 @@ TEST_CASE("innovation: the minimum rises by it with the edge, falls by it withou
         Approx(with - kept.chi2()).epsilon(0.02));
 }
 
+TEST_CASE("joining edges: those without which the graph falls apart, one for each two parts") {
+  Graph all;
+  for (int i = 0; i < 6; ++i) all.add_vertex<VertexSe2>(VertexId(i), {1.0 * i, 0, 0});
+  const auto add = [&](VertexIndex from, VertexIndex to) {
+    all.add_edge(EdgeSe2{{1.0 * (to - from), 0, 0}}, {from, to}, Eigen::Matrix3d::Identity());
+  };
+  for (VertexIndex i = 0; i < 5; ++i) add(i, i + 1);
+  add(0, 4);
+  add(1, 2);
+  const std::vector<EdgePlace> out = {{0, 2}, {0, 4}, {0, 5}};  // 2-3, 4-5, 0-4: three parts are left
+  const Graph kept = without_edges(all, out);
+  const std::vector<EdgePlace> both = {{0, 2}, {0, 4}};
+  CHECK(joining_edges(all, out, kept) == both);  // 0-4 joins what 2-3 has joined
+  const std::vector<EdgePlace> preferred = {{0, 5}, {0, 2}, {0, 4}};
+  const std::vector<EdgePlace> others = {{0, 5}, {0, 4}};
+  CHECK(joining_edges(all, preferred, kept) == others);
+  const std::vector<EdgePlace> inner = {{0, 6}};
+  CHECK(joining_edges(all, inner, without_edges(all, inner)).empty());
+  // Fixed vertices keep both parts where they are, so the edge between them is compared with what they know.
+  all.set_fixed(0, true);
+  all.set_fixed(3, true);
+  const std::vector<EdgePlace> lone = {{0, 4}};
+  CHECK(joining_edges(all, out, without_edges(all, out)) == lone);
+}
+
+TEST_CASE(
+    "graduation: the edge that holds two parts together is not left out, whatever was left out on the way") {
+  const TypeRegistry registry = full_registry();
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    INFO("seed " << seed);
+    Spoiled spoiled = spoiled_walk(100, false, seed);
+    const auto algorithm = registry.make_algorithm("dogleg");
+    const auto solver = registry.make_linear_solver("eigen");
+    const GraduationResult result = graduate(spoiled.graph, *algorithm, *solver, {});
+    const Graph kept = without_edges(spoiled.graph, result.outliers);
+    CHECK(joining_edges(spoiled.graph, result.outliers, kept).empty());
+  }
+}
+
 TEST_CASE(
     "graduation: a graph without some edges keeps values, ids, stamps, fixed vertices and losses of the others") {
   Graph graph = noisy_circle(12);
