@@ -103,10 +103,9 @@ double turns_apart(const ChordPair& one, const ChordPair& next) {
 }
 
 bool YawBias::is_large() const {
-  constexpr double kSigmas = 5;
   constexpr double kOfTime_radps = 0.01;
   constexpr double kOfWay_radpm = 0.001;
-  return sigmas > kSigmas && (std::abs(radps) > kOfTime_radps || std::abs(radpm) > kOfWay_radpm);
+  return is_significant() && (std::abs(radps) > kOfTime_radps || std::abs(radpm) > kOfWay_radpm);
 }
 
 YawBias bias_of(std::span<const ChordPair> chords) {

@@ -88,6 +88,7 @@ std::optional<Jump> jump_to(const ReckonedFixes& receiver, std::size_t i) {
 /// How the odometry lies along the fixes on one side of a moment.
 struct Side {
   double angle = std::numeric_limits<double>::quiet_NaN();   ///< by which the fixes are turned against it
+  double way_m = 0;                                          ///< that shows the angle, of the odometry
   double usual_m = std::numeric_limits<double>::infinity();  ///< four in five differ by at most that
 };
 
@@ -98,6 +99,7 @@ struct Residual {
   Eigen::Vector2d by = Eigen::Vector2d::Zero();
   double beside_m = 0;  ///< the larger Side::usual_m before and after it
   double way_m = 0;     ///< of the odometry
+  double levers = 0;    ///< of its ways, by those that show how it lies: errors at these turn the others
 };
 
 /// How large residuals usually are while the vehicle moves. Infinite if few are known.
@@ -131,8 +133,11 @@ double four_fifths(const std::vector<ChordPair>& ways, double angle) {
   return *place;
 }
 
+/// Between fixes further apart (a tunnel) the odometry may have turned by the bias of its gyro.
+constexpr double kGap_s = 10;
+
 /// Returns the ways to the kept fixes before (step -1) or after (step 1) one of them: as far as 200 m, at least
-/// 20 s (in a shorter time a slide looks like a turned way), at most a minute.
+/// 20 s (in a shorter time a slide looks like a turned way), at most a minute, and to the next gap.
 std::vector<ChordPair> ways_beside(const ReckonedFixes& receiver, const std::vector<std::size_t>& kept,
                                    std::ptrdiff_t from, int step) {
   constexpr double kWay_m = 200;
@@ -143,7 +148,8 @@ std::vector<ChordPair> ways_beside(const ReckonedFixes& receiver, const std::vec
   for (std::ptrdiff_t j = from + step; j >= 0 && j < std::ssize(kept); j += step) {
     const std::size_t there = kept[static_cast<std::size_t>(j)];
     const double apart_s = std::abs(seconds_from(receiver, here, there));
-    if (apart_s > kLongest_s) break;
+    const std::size_t nearer = kept[static_cast<std::size_t>(j - step)];
+    if (apart_s > kLongest_s || std::abs(seconds_from(receiver, nearer, there)) > kGap_s) break;
     ways.push_back(chord_between(receiver, here, there));
     if (apart_s >= kShortest_s && ways.back().odometry.norm() >= kWay_m) break;
   }
@@ -151,7 +157,7 @@ std::vector<ChordPair> ways_beside(const ReckonedFixes& receiver, const std::vec
 }
 
 /// Lays the odometry along the fixes on one side of each of the kept ones. Where the vehicle stands, the angle is
-/// the last one known.
+/// the last one known on the same side of a gap.
 std::vector<Side> sides_of(const ReckonedFixes& receiver, const std::vector<std::size_t>& kept, int step) {
   constexpr double kShortest_m = 30;
   const auto count = std::ssize(kept);
@@ -159,14 +165,19 @@ std::vector<Side> sides_of(const ReckonedFixes& receiver, const std::vector<std:
     return a.odometry.norm() < b.odometry.norm();
   };
   std::vector<Side> sides(kept.size());
-  double angle = std::numeric_limits<double>::quiet_NaN();
+  Side known;
   for (std::ptrdiff_t n = 0; n < count; ++n) {
     const std::ptrdiff_t i = step < 0 ? n : count - 1 - n;
     const std::vector<ChordPair> ways = ways_beside(receiver, kept, i, step);
-    if (ways.empty()) continue;
-    const auto longest = std::max_element(ways.begin(), ways.end(), is_shorter);
-    if (longest->odometry.norm() >= kShortest_m) angle = angle_between(longest->odometry, longest->gnss);
-    sides[static_cast<std::size_t>(i)] = {angle, four_fifths(ways, angle)};
+    if (ways.empty()) {  // the first fix after a gap, or of all
+      known = {};
+      continue;
+    }
+    const ChordPair& longest = *std::max_element(ways.begin(), ways.end(), is_shorter);
+    const double way_m = longest.odometry.norm();
+    if (way_m >= kShortest_m) known = {angle_between(longest.odometry, longest.gnss), way_m};
+    known.usual_m = four_fifths(ways, known.angle);
+    sides[static_cast<std::size_t>(i)] = known;
   }
   return sides;
 }
@@ -192,7 +203,8 @@ std::vector<Residual> residuals_over(double slide_s, const ReckonedFixes& receiv
     const Eigen::Vector2d second = receiver.antenna[kept[to]].head<2>() - middle;
     residuals.push_back({kept[i], kept[to],
                          step.gnss - Eigen::Rotation2Dd(angle) * first - Eigen::Rotation2Dd(turned) * second,
-                         std::max(before[i].usual_m, after[to].usual_m), step.odometry.norm()});
+                         std::max(before[i].usual_m, after[to].usual_m), step.odometry.norm(),
+                         first.norm() / before[i].way_m + second.norm() / after[to].way_m});
   }
   return residuals;
 }
@@ -220,9 +232,9 @@ std::vector<Jump> slides_of(const ReckonedFixes& receiver) {
   for (const double slide_s : kSlides_s) {
     const std::vector<Residual> residuals = residuals_over(slide_s, receiver, kept, before, after);
     const Usual usual = usual_of(residuals);
-    for (const auto& [from, to, by, beside_m, way_m] : residuals) {
+    for (const auto& [from, to, by, beside_m, way_m, levers] : residuals) {
       const double usual_m = usual.on(way_m);
-      const double least = std::max(kUnusual * usual_m, least_m(receiver, from, to));
+      const double least = std::max(1.0, levers) * std::max(kUnusual * usual_m, least_m(receiver, from, to));
       if (by.norm() < least || beside_m > kQuarter * by.norm()) continue;
       slides.push_back({.first = from + 1, .settled = to, .by = by, .usual_m = usual_m});
     }

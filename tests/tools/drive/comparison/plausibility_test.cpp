@@ -272,6 +272,27 @@ TEST_CASE("plausibility: a poor gyro on a fast road after slow streets makes no 
   CHECK(drives_with_jumps <= 4);  // judged by the time alone: 17
 }
 
+TEST_CASE(
+    "plausibility: an odometry that a tunnel has turned by the bias of its gyro makes no jump of the fixes") {
+  const auto winds = [](int k) { return 0.01 * std::sin(0.02 * k); };
+  for (const double bias : {-0.008, 0.003, 0.006}) {
+    INFO("bias " << bias << " rad/s");
+    const Scene whole = scene_of(25, 1800, winds, [&](int k) { return winds(k) + bias; });
+    Scene tunnels;
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> normal;
+    for (std::size_t k = 0; k < whole.fixes.size(); ++k) {
+      if (k % 300 >= 200 && k % 300 < 200 + k / 15) continue;  // of 13 to 100 s
+      Fix fix = whole.fixes[k];
+      fix.position += Eigen::Vector2d(normal(random), normal(random));
+      fix.covariance.setIdentity();
+      tunnels.fixes.push_back(fix);
+      tunnels.antenna.push_back(whole.antenna[k]);
+    }
+    CHECK(warnings(tunnels).empty());
+  }
+}
+
 TEST_CASE("plausibility: of another receiver the jumps are named, unless the odometry is in a wrong unit") {
   const std::vector<std::string> names = {"front", "roof"};
   for (const double speed_factor : {1.0, 3.6}) {
