@@ -10,12 +10,14 @@
 
 #include <catch2/catch.hpp>
 
-#include <waymark/core/base/error.hpp>
 #include <waymark/core/base/detail/address_sanitizer.hpp>
+#include <waymark/core/base/error.hpp>
 #include <waymark/tools/fleet/folder/fleet_plan.hpp>
 #include <waymark/tools/fleet/work/fleet_work.hpp>
 #include <waymark/tools/fleet/work/process_pool.hpp>
 #include <waymark/tools/fleet/work/slurm.hpp>
+
+#include "support/skip.hpp"
 
 namespace fleet_work_test {
 
@@ -129,7 +131,8 @@ TEST_CASE("fleet: a process has no more memory than its share") {
   };
   (void)ends_of(scratch, {taker}, 1);
   CHECK(size() == 60000000);
-  if (waymark::detail::kAddressSanitized) return waymark_test::skip("AddressSanitizer knows no limit of memory");
+  if (waymark::detail::kAddressSanitized)
+    return waymark_test::skip("AddressSanitizer knows no limit of memory");
   (void)ends_of(scratch, {taker}, 1, 20000000);
   CHECK(size() < 60000000);
 }

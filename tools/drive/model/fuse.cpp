@@ -207,6 +207,19 @@ std::string words_for_late_odometry(double late_s) {
       late_s, -late_s);
 }
 
+std::string words_for_antenna(const AntennaPlace& antenna, const std::string& receiver) {
+  const auto side = [](double value, const char* positive, const char* negative) {
+    return value < 0 ? negative : positive;
+  };
+  const Eigen::Vector2d& at = antenna.place_m;
+  return fmt::format(
+      "the antenna of '{}' seems to be {:.2f} +- {:.2f} m {} and {:.2f} +- {:.2f} m {} the point of the vehicle whose "
+      "motion the odometry measures, and is taken to be there: state 'antenna: [{:.2f}, {:.2f}]' for it, or the result "
+      "is off by as much, and late or early in bends",
+      receiver, std::abs(at.x()), antenna.sigma_m.x(), side(at.x(), "ahead of", "behind"), std::abs(at.y()),
+      antenna.sigma_m.y(), side(at.y(), "to the left of", "to the right of"), at.x(), at.y());
+}
+
 std::string words_for_drift(const ClockDrift& drift, const PreparedDrive& drive) {
   constexpr double kMillion = 1e6;
   const double ppm = kMillion * drift.rate;
@@ -327,6 +340,12 @@ ModeledDrive Fusion::on_clock_of_fixes(ModeledDrive modeled, const FusionSetting
   return modeled;
 }
 
+std::optional<AntennaPlace> Fusion::antenna_of(const ModeledDrive& modeled) const {
+  if (modeled.noise.parameters.empty() || modeled.noise.is_poor_odometry(modeled.placed.odometry_name))
+    return std::nullopt;
+  return find_antenna_place(modeled.placed, drive_.sensors, modeled.settings, registry_);
+}
+
 void Fusion::add_deviations(ModeledDrive& modeled) const {
   if (modeled.noise.parameters.empty()) return;
   find_deviations(modeled.placed, drive_.sensors, modeled.decision, registry_, modeled.noise, between_);
@@ -340,7 +359,14 @@ ModeledDrive Fusion::estimated(const FusionSettings& settings) {
 
 ModeledDrive Fusion::model(const FusionSettings& settings) {
   refuse_misreading(placed(decision_on(settings)));
-  ModeledDrive modeled = on_clock_of_fixes(searched(settings), settings);
+  ModeledDrive modeled = searched(settings);
+  // An antenna that is elsewhere looks like a clock that is wrong.
+  if (const std::optional<AntennaPlace> antenna = antenna_of(modeled)) {
+    modeled.placed.warnings.push_back(words_for_antenna(*antenna, receiver_name(modeled.placed, 0)));
+    modeled.odometry_late_s = 0;
+  } else {
+    modeled = on_clock_of_fixes(std::move(modeled), settings);
+  }
   if (modeled.odometry_late_s > 0)
     modeled.placed.warnings.push_back(words_for_late_odometry(modeled.odometry_late_s));
   add_deviations(modeled);

@@ -174,7 +174,7 @@ std::vector<Value> of_selected(std::span<const Fix> fixes, std::span<const Value
 /// Returns what all receivers say that can tell: one of them may be wrong itself.
 std::optional<std::string> misreading_of(const PlacedDrive& placed,
                                          const std::optional<GeodeticPoint>& place) {
-  constexpr std::size_t kFewest = 30;
+  constexpr std::size_t kFewestFixes = 30;
   std::optional<std::string> misreading;
   Timeline timeline = placed.timeline;
   for (int source = 0; source < std::ssize(placed.time_offsets_s); ++source) {
@@ -182,7 +182,7 @@ std::optional<std::string> misreading_of(const PlacedDrive& placed,
       return fix.status != FixStatus::withheld && fix.source == source;
     };
     const std::vector<Fix> fixes = of_selected<Fix>(placed.fixes, placed.fixes, is_of_source);
-    if (fixes.size() < kFewest) continue;
+    if (fixes.size() < kFewestFixes) continue;
     timeline.fix_node = of_selected<std::size_t>(placed.fixes, placed.timeline.fix_node, is_of_source);
     const std::optional<std::string> found = find_misreading(timeline, fixes, placed.standstill_mps, place);
     if (!found) return std::nullopt;
@@ -207,7 +207,7 @@ void compare_with_fixes(const PreparedDrive& drive, std::span<const Eigen::Vecto
       of_selected<Eigen::Vector3d>(placed.fixes, antenna, is_used), place, placed.receivers, of_several);
   placed.speed_factor = compared.speed_factor;
   placed.turn_factor = compared.turn_factor;
-  placed.yaw_bias = compared.yaw_bias;
+  if (compared.yaw_bias && compared.yaw_bias->is_large()) placed.yaw_bias = compared.yaw_bias;
   for (std::string& warning : compared.warnings) placed.warnings.push_back(std::move(warning));
 }
 

@@ -20,8 +20,9 @@ namespace {
 
 /// Five minutes of bends at 10 Hz and 8 to 16 m/s, with fixes of 2 cm at 1 Hz.
 /// @param drift seconds by which the odometry's clock hurries in a second
-/// @param truth receives the positions at the fixes
-PreparedDrive bends(double odometry_late_s, double drift = 0, std::vector<Eigen::Vector2d>* truth = nullptr) {
+/// @param truth receives the positions at the fixes @param antenna_m where it is; nobody states it
+PreparedDrive bends(double odometry_late_s, double drift = 0, std::vector<Eigen::Vector2d>* truth = nullptr,
+                    const Eigen::Vector2d& antenna_m = {0, 0}) {
   constexpr double kStep_s = 0.1;
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal(0, 1);
@@ -39,7 +40,8 @@ PreparedDrive bends(double odometry_late_s, double drift = 0, std::vector<Eigen:
       Fix fix;
       fix.stamp = Stamp::from_seconds(1000 + t);
       fix.epoch = i / 10 - 1;
-      fix.position = pose.position + 0.02 * Eigen::Vector2d(normal(random), normal(random));
+      fix.position = pose.position + rotate(pose.heading, antenna_m) +
+                     0.02 * Eigen::Vector2d(normal(random), normal(random));
       fix.covariance = 4e-4 * Eigen::Matrix2d::Identity();
       drive.fixes.push_back(fix);
       if (truth != nullptr) truth->push_back(pose.position);
@@ -82,6 +84,38 @@ TEST_CASE(
   PreparedDrive stated = bends(0.1);
   stated.receivers.front().delay_is_stated = true;
   CHECK(told(stated).empty());
+}
+
+TEST_CASE("antenna: one that is not stated is told with its place, and is no clock that is wrong") {
+  for (const Eigen::Vector2d& antenna : {Eigen::Vector2d(1.5, 0.4), Eigen::Vector2d(-0.8, -0.6)}) {
+    const PreparedDrive drive = bends(0, 0, nullptr, antenna);
+    const ModeledDrive modeled = fuse(drive, {}, registry()).model;
+    const auto found = find_antenna_place(modeled.placed, {}, modeled.settings, registry());
+    REQUIRE(found);
+    CHECK(found->sigma_m.maxCoeff() < 0.4);
+    CHECK(std::abs(found->place_m.x() - antenna.x()) < 4 * found->sigma_m.x());
+    CHECK(std::abs(found->place_m.y() - antenna.y()) < 4 * found->sigma_m.y());
+    const std::vector<std::string> warnings = modeled.warnings();
+    const auto says = [&](const char* words) {
+      return std::any_of(warnings.begin(), warnings.end(), [&](const std::string& warning) {
+        return warning.find(words) != std::string::npos;
+      });
+    };
+    CHECK(says("state 'antenna: ["));
+    CHECK_FALSE(says("the odometry is probably late"));
+    CHECK(modeled.clock_drift.rate == 0);
+  }
+}
+
+TEST_CASE("antenna: nothing is said where it is at the point of the odometry, or is stated") {
+  for (const double late_s : {0.0, 0.1}) {
+    const ModeledDrive modeled = fuse(bends(late_s), {}, registry()).model;
+    CHECK_FALSE(find_antenna_place(modeled.placed, {}, modeled.settings, registry()));
+  }
+  PreparedDrive stated = bends(0, 0, nullptr, {1.5, 0.4});
+  for (Fix& fix : stated.fixes) fix.antenna_m = {1.5, 0.4};
+  const ModeledDrive modeled = fuse(stated, {}, registry()).model;
+  CHECK_FALSE(find_antenna_place(modeled.placed, {}, modeled.settings, registry()));
 }
 
 TEST_CASE("clock drift: poses are at the times of the fixes, and the drift is told") {

@@ -1,0 +1,46 @@
+#include <waymark/tools/drive/estimation/trial_drive.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <waymark/core/linear/block_cholesky.hpp>
+#include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/tools/drive/model/build.hpp>
+
+namespace waymark::drive {
+
+TrialDrive::TrialDrive(CoarseDrive coarse, const FusionSettings& settings, const TypeRegistry& registry,
+                       const std::function<void()>& between)
+    : coarse_(std::move(coarse)), settings_(settings), registry_(registry), between_(between) {
+  (void)cost_with([](PlacedDrive&) {});
+  keep_poses(graph_, coarse_);
+}
+
+double TrialDrive::cost_with(const std::function<void(PlacedDrive&)>& change) {
+  PlacedDrive changed = coarse_.drive;
+  change(changed);
+  Graph graph = build_graph(changed, coarse_.sensors, settings_, registry_).graph;
+  if (graph_.vertex_count() > 0) graph.set_values(graph_.values());
+  graph_ = std::move(graph);
+  BlockCholesky cholesky;
+  const auto algorithm = registry_.make_algorithm("dogleg");
+  const Summary summary = optimize(graph_, *algorithm, cholesky, {});
+  if (between_) between_();
+  return summary.converged() ? 0.5 * summary.final_chi2 : std::numeric_limits<double>::quiet_NaN();
+}
+
+Eigen::Vector2d TrialDrive::velocity_at(std::size_t fix) const {
+  const Timeline& timeline = coarse_.drive.timeline;
+  const std::size_t node = timeline.fix_node[fix];
+  const double speed_mps = timeline.intervals[std::min(node, timeline.intervals.size() - 1)].speed_mps;
+  const double heading_rad = coarse_.drive.start.poses[node][2];
+  return speed_mps * Eigen::Vector2d(std::cos(heading_rad), std::sin(heading_rad));
+}
+
+double TrialDrive::spread(double cost) const {
+  return std::max(1.0, std::sqrt(cost / static_cast<double>(coarse_.drive.fixes.size())));
+}
+
+}  // namespace waymark::drive

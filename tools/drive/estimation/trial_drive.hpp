@@ -1,0 +1,43 @@
+/// A coarse drive that is fused again and again with one thing changed: what makes its fixes most probable?
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+#include <Eigen/Core>
+
+#include <waymark/core/graph/graph.hpp>
+#include <waymark/core/registry/registry.hpp>
+#include <waymark/tools/drive/description/fusion_settings.hpp>
+#include <waymark/tools/drive/estimation/coarse.hpp>
+
+namespace waymark::drive {
+
+/// Refers to what it is made of, which must outlive it.
+class TrialDrive {
+ public:
+  /// Fuses the drive as it is. @param settings with the noise
+  /// @param between called after each fusion; what it throws ends the trial. Empty: nothing is called
+  TrialDrive(CoarseDrive coarse, const FusionSettings& settings, const TypeRegistry& registry,
+             const std::function<void()>& between);
+
+  /// Returns the least half chi2 over the states of a changed drive; NaN if it was not reached. It begins at the states
+  /// of the fusion before.
+  [[nodiscard]] double cost_with(const std::function<void(PlacedDrive&)>& change);
+
+  /// Returns the drive; its initial guess is the minimum of the drive as it is.
+  [[nodiscard]] const PlacedDrive& drive() const { return coarse_.drive; }
+  /// Returns the velocity of the vehicle at a fix, m/s, in the frame.
+  [[nodiscard]] Eigen::Vector2d velocity_at(std::size_t fix) const;
+  /// Returns how many times its own noise each fix costs: what no state explains makes a cost steeper than it is known.
+  [[nodiscard]] double spread(double cost) const;
+
+ private:
+  CoarseDrive coarse_;
+  const FusionSettings& settings_;
+  const TypeRegistry& registry_;
+  const std::function<void()> between_;
+  Graph graph_;
+};
+
+}  // namespace waymark::drive
