@@ -33,6 +33,10 @@ void EdgeBatchBase::remove(std::span<const char> gone, std::span<const VertexInd
   }
 }
 
+std::string EdgeBatchBase::name_in(std::string_view tag, std::size_t edge, std::string_view function) {
+  return std::string(tag) + " number " + std::to_string(edge + 1) + ": " + std::string(function);
+}
+
 void EdgeBatchBase::throw_edge_error(std::string_view tag, const ValueView& view, EdgeRange range) const {
   const auto name = [&](std::size_t edge) {
     return std::string(tag) + " number " + std::to_string(edge + 1);

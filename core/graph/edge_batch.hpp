@@ -169,6 +169,9 @@ class EdgeBatchBase {
     }
   }
 
+  /// Returns "EDGE_X number 3: sight", for messages about a function of an edge.
+  static std::string name_in(std::string_view tag, std::size_t edge, std::string_view function);
+
   EdgeBatchBase() = default;
   EdgeBatchBase(const EdgeBatchBase&) = default;
   EdgeBatchBase& operator=(const EdgeBatchBase&) = default;

@@ -209,6 +209,8 @@ EdgeTypeCheck check_edge_type(const TypeRegistry& registry, const EdgeType& type
         ++result.not_finite;
         continue;
       }
+      const RelativeCheck relative = check_relative(graph, 0, 1);
+      if (result.relative.edges == 0 || relative.error > result.relative.error) result.relative = relative;
       result.normal_error = std::max(result.normal_error, normal_error_of(graph));
       const GradientCheck found = check_gradients(graph, 0, 1);
       result.judged += found.judged;

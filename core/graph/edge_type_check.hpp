@@ -8,6 +8,7 @@
 
 #include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/gradient_check.hpp>
+#include <waymark/core/graph/relative_check.hpp>
 #include <waymark/core/registry/registry.hpp>
 
 namespace WAYMARK_EXPORT waymark {
@@ -33,7 +34,7 @@ struct EdgeScenario {
 [[nodiscard]] Graph single_edge(const TypeRegistry& registry, const EdgeType& type,
                                 const EdgeScenario& scenario, std::mt19937_64& random);
 
-/// A larger difference of normal equations is a wrong promise: kRelative, or carry() of the vertices.
+/// A larger difference of normal equations is a wrong promise: carry() of the vertices, or kRelative.
 inline constexpr double kNormalTolerance = 1e-9;
 
 /// A larger error where a sight says that it is zero is a wrong sight.
@@ -48,15 +49,17 @@ struct EdgeTypeCheck {
   std::size_t not_finite = 0;  ///< trials whose error or Jacobians are not finite
   std::size_t trials = 0;
   std::size_t judged = 0;  ///< Jacobians that differences could check
+  RelativeCheck relative;  ///< the largest change by a rigid motion, if the type says kRelative
   /// The largest difference between the normal equations of the edge and those of its Jacobians, relative
-  /// to their size. A type that says kRelative and is not relative has wrong ones.
+  /// to their size. A type whose vertices have a wrong carry() has wrong ones.
   double normal_error = 0;
   /// The largest error of the edge where its sight says that it is zero (base/sight.hpp); 0 without a sight.
   double sight_error = 0;
 
   [[nodiscard]] bool sound() const {
     return worst.error <= kGradientTolerance && not_finite == 0 && judged > 0 &&
-           normal_error <= kNormalTolerance && sight_error <= kSightTolerance;
+           relative.error <= kRelativeTolerance && normal_error <= kNormalTolerance &&
+           sight_error <= kSightTolerance;
   }
 };
 

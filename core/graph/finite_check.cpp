@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <waymark/core/graph/detail/edge_name.hpp>
+
 namespace waymark {
 namespace {
 
@@ -26,18 +28,6 @@ std::string flaw_of(const Graph& graph, const EdgeBatchBase& batch, std::size_t 
   return good ? "" : "its loss '" + loss->name + "'";
 }
 
-std::string joined_ids(const Graph& graph, std::span<const VertexIndex> vertices) {
-  std::string text;
-  for (std::size_t k = 0; k < vertices.size(); ++k)
-    text += (k == 0 ? "" : k + 1 == vertices.size() ? " and " : ", ") + to_string(graph.id(vertices[k]));
-  return (vertices.size() == 1 ? "vertex " : "vertices ") + text;
-}
-
-std::string name_of(const Graph& graph, std::size_t b, std::size_t edge) {
-  return graph.edge_type(b).tag + " number " + std::to_string(edge + 1) + " (" +
-         joined_ids(graph, graph.batch(b).vertices(edge)) + ")";
-}
-
 /// Every edge is finite. Returns the one with the largest information if their sum is not.
 std::optional<std::string> find_overflow(const Graph& graph) {
   double sum = 0;
@@ -49,7 +39,7 @@ std::optional<std::string> find_overflow(const Graph& graph) {
       sum += information;
       if (!(information > largest)) continue;
       largest = information;
-      name = name_of(graph, b, edge);
+      name = detail::edge_name(graph, b, edge);
     }
   }
   if (std::isfinite(sum)) return std::nullopt;
@@ -69,7 +59,7 @@ std::optional<std::string> find_not_finite(const Graph& graph) {
     for (std::size_t edge = 0; edge < batch.size(); ++edge) {
       const std::string flaw = flaw_of(graph, batch, edge);
       if (flaw.empty()) continue;
-      return name_of(graph, b, edge) + ": " + flaw + " is not finite";
+      return detail::edge_name(graph, b, edge) + ": " + flaw + " is not finite";
     }
   }
   return find_overflow(graph);

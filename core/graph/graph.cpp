@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -228,6 +229,25 @@ void Graph::check_vertices(const EdgeType& type, std::span<const VertexIndex> ve
   }
 }
 
+/// A caller who fills the upper triangle alone would lose it without a word.
+void Graph::check_triangles(const EdgeType& type, const double* information) {
+  constexpr double kRounding = 1e-6;  // of an inverse, beside the diagonal
+  const int n = type.error_dimension;
+  for (int c = 0; c < n; ++c) {
+    for (int r = c + 1; r < n; ++r) {
+      const double lower = information[c * n + r];
+      const double upper = information[r * n + c];
+      if (upper == 0 || upper == lower) continue;
+      const double size = std::sqrt(std::abs(information[c * n + c] * information[r * n + r]));
+      if (!(std::abs(upper - lower) > kRounding * size)) continue;
+      throw UsageError(type.tag +
+                       ": the information matrix is not symmetric: its lower triangle is read, and row " +
+                       std::to_string(r) + ", column " + std::to_string(c) + " is " + std::to_string(lower) +
+                       " there, " + std::to_string(upper) + " above the diagonal");
+    }
+  }
+}
+
 EdgePlace Graph::add_edge(const EdgeType& type, std::span<const VertexIndex> vertices,
                           std::span<const double> fields, const Eigen::MatrixXd& information) {
   check_vertices(type, vertices);
@@ -240,6 +260,7 @@ EdgePlace Graph::add_edge(const EdgeType& type, std::span<const VertexIndex> ver
       throw UsageError(type.tag + ": the information matrix must be " + std::to_string(type.error_dimension) +
                        " x " + std::to_string(type.error_dimension));
     }
+    check_triangles(type, information.data());
   }
   const std::size_t place = batch_of(type);
   EdgeBatchBase& target = *batches_[place].edges;

@@ -146,9 +146,10 @@ class Graph {
 
   /// Adds an edge by run-time type and returns its place.
   /// @param fields see EdgeType::fields
-  /// @param information symmetric and positive semidefinite, which is not checked
-  /// @throws UsageError for a wrong number or type of vertices, a vertex named twice,
-  /// and wrong sizes
+  /// @param information symmetric and positive semidefinite, which is not checked. Only its lower triangle
+  /// is read; the upper one may be zero
+  /// @throws UsageError for a wrong number or type of vertices, a vertex named twice, wrong sizes, and an
+  /// upper triangle that is neither zero nor the mirror of the lower one
   EdgePlace add_edge(const EdgeType& type, std::span<const VertexIndex> vertices,
                      std::span<const double> fields, const Eigen::MatrixXd& information);
   template <Edge E>
@@ -159,6 +160,7 @@ class Graph {
     const std::size_t place = batch_of(type);
     EdgeBatchBase& target = *batches_[place].edges;
     check_vertices(type, vertices);
+    check_triangles(type, information.data());
     if (auto* typed = dynamic_cast<EdgeBatch<E>*>(&target)) {
       typed->append(edge, vertices, information);
     } else {
@@ -196,6 +198,7 @@ class Graph {
   std::size_t batch_of(const EdgeType& type);
   void check_type(VertexIndex v, std::string_view tag) const;
   void check_vertices(const EdgeType& type, std::span<const VertexIndex> vertices) const;
+  static void check_triangles(const EdgeType& type, const double* information);
   std::size_t register_type(const VertexType& type);
 
   template <Edge E>

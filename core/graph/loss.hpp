@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include <waymark/core/base/export.hpp>
+#include <waymark/core/base/guard.hpp>
 
 namespace WAYMARK_EXPORT waymark {
 
@@ -40,7 +41,8 @@ struct Loss {
   double stretch = 1;
 
   [[nodiscard]] LossValue at(double squared) const {
-    const LossValue value = evaluate(squared / stretch, scale);
+    const LossValue value = guarded([&] { return "loss '" + name + "'"; }, name,
+                                    [&] { return evaluate(squared / stretch, scale); });
     return {stretch * value.rho, value.weight, value.curvature / stretch};
   }
   friend bool operator==(const Loss& a, const Loss& b) {

@@ -130,7 +130,7 @@ struct VertexType {
 
 namespace detail {
 
-/// The chart of a type, guarded for plugins.
+/// The functions of a type, guarded for plugins.
 template <Vertex V>
 void retract_guarded(double* value, const double* delta) {
   guarded([] { return std::string(std::string_view(V::kTag)) + ": retract"; }, V::kTag,
@@ -140,6 +140,17 @@ template <Vertex V>
 void local_guarded(const double* from, const double* to, double* delta) {
   guarded([] { return std::string(std::string_view(V::kTag)) + ": local"; }, V::kTag,
           [&] { V::local(from, to, delta); });
+}
+template <Vertex V>
+Eigen::Vector2d position_guarded(const double* value) {
+  return guarded([] { return std::string(std::string_view(V::kTag)) + ": position"; }, V::kTag,
+                 [&]() -> Eigen::Vector2d { return V::position(value); });
+}
+template <Vertex V>
+void rigid_motion_guarded(const double* value, const Eigen::Vector2d& centre, double extent,
+                          double* columns) {
+  guarded([] { return std::string(std::string_view(V::kTag)) + ": rigid_motion"; }, V::kTag,
+          [&] { V::rigid_motion(value, centre, extent, columns); });
 }
 
 }  // namespace detail
@@ -160,8 +171,8 @@ template <Vertex V>
   type.retract = &detail::retract_guarded<V>;
   type.local = &detail::local_guarded<V>;
   if constexpr (requires { V::rigid_motion; }) {
-    type.position = &V::position;
-    type.rigid_motion = &V::rigid_motion;
+    type.position = &detail::position_guarded<V>;
+    type.rigid_motion = &detail::rigid_motion_guarded<V>;
   }
   return type;
 }

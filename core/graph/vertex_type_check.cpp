@@ -124,7 +124,12 @@ class ChartCheck {
   std::vector<std::string> broken_;
 };
 
-/// The derivative of a function by differences of fourth order. @returns NaN at a corner
+bool is_finite(const LossValue& value) {
+  return std::isfinite(value.rho) && std::isfinite(value.weight) && std::isfinite(value.curvature);
+}
+
+/// The derivative of a function by differences of fourth order. @returns NaN at a corner, and where the
+/// function is not finite
 template <typename Function>
 double derivative(const Function& function, double at, double step) {
   const double wide = (function(at + 2 * step) - function(at - 2 * step)) / (4 * step);
@@ -143,7 +148,8 @@ std::vector<std::string> broken_promises(const LossType& type) {
   constexpr double kSteps[] = {0.01, 0.1, 0.5, 0.9, 1.7, 3.1, 7.3, 20, 150};
   std::vector<std::string> broken;
   for (const double scale : {0.5, 1.0, 3.0}) {
-    const auto at = [&](double s) { return type.evaluate(s, scale); };
+    const Loss loss{type.name, type.evaluate, scale};
+    const auto at = [&](double s) { return loss.at(s); };
     const LossValue zero = at(0);
     if (std::abs(zero.rho) > 1e-12 || std::abs(zero.weight - 1) > 1e-12)
       broken.push_back(
@@ -152,6 +158,12 @@ std::vector<std::string> broken_promises(const LossType& type) {
     for (const double step : kSteps) {
       const double s = step * scale * scale;
       const LossValue value = at(s);
+      if (!is_finite(value)) {
+        broken.push_back(sentence("scale ", scale, ", s = ", s, ": rho is ", value.rho, ", the weight ",
+                                  value.weight, ", the curvature ", value.curvature,
+                                  "; all three must be finite"));
+        break;
+      }
       if (!(value.weight >= 0) || value.weight > before + 1e-12)
         broken.push_back(sentence("scale ", scale, ", s = ", s, ": the weight ", value.weight,
                                   " is negative or larger than before"));

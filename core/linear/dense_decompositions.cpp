@@ -7,6 +7,22 @@
 #include <waymark/core/linear/dense_decompositions.hpp>
 
 namespace waymark {
+namespace {
+
+/// Tells whether every diagonal number is at least the sum of the other magnitudes in its column.
+/// This is the usual case.
+bool is_diagonally_dominant(const Eigen::MatrixXd& matrix) {
+  for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
+    double rest = matrix(column, column);
+    for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+      if (row != column) rest -= std::abs(matrix(row, column));
+    }
+    if (!(rest >= 0)) return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
@@ -15,6 +31,13 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix) {
 
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+bool is_positive_semidefinite(const Eigen::MatrixXd& matrix) {
+  if (is_diagonally_dominant(matrix)) return true;  // by Gershgorin
+  const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(matrix);
+  const double largest = std::max(std::abs(eigenvalues[0]), eigenvalues[eigenvalues.size() - 1]);
+  return eigenvalues[0] >= -1e-9 * largest;
 }
 
 // [0 A; A^T 0] has the eigenvalues +-values with the eigenvectors (u, +-v) / sqrt(2). Nothing is squared,

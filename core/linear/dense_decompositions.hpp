@@ -23,6 +23,10 @@ struct SymmetricEigen {
 /// triangle only.
 [[nodiscard]] Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
 
+/// Tells whether the smallest eigenvalue is at least -1e-9 times the largest, n >= 1. Zeros are legal: in an
+/// information matrix they mean no information on an axis.
+[[nodiscard]] bool is_positive_semidefinite(const Eigen::MatrixXd& matrix);
+
 /// A = U diag(values) V^T.
 struct SingularValues {
   Eigen::VectorXd values;  ///< k = min(m, n), in decreasing order

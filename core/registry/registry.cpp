@@ -78,6 +78,21 @@ auto make_own(const Registered<T>& entry, const char* kind, const Options& optio
   return entry.type.make(CheckedOptions(entry.type.name, options, entry.type.options));
 }
 
+/// Guards an initial guess, which is called from the table too.
+StartType guarded_start(StartType type, const std::string& origin) {
+  type.make = [who = Guarded{origin, "initial guess", type.name},
+               make = std::move(type.make)](const Graph& graph) {
+    InitialValues made = guarded([&] { return who.text(); }, who.name, [&] { return make(graph); });
+    const std::size_t expected = graph.values().size();
+    if (made.values.empty() || made.values.size() == expected) return made;
+    throw PluginError(who.text() + ": made " + std::to_string(made.values.size()) +
+                          " numbers for a graph of " + std::to_string(expected) +
+                          "; they must be in the layout of Graph::values()",
+                      who.name);
+  };
+  return type;
+}
+
 }  // namespace
 
 void TypeRegistry::add_vertex(VertexType type) {
@@ -112,7 +127,7 @@ void TypeRegistry::add_log_reader(LogReaderType type) {
   add(log_readers_, std::move(type), origin_, "log reader");
 }
 void TypeRegistry::add_start(StartType type) {
-  add(starts_, std::move(type), origin_, "initial guess");
+  add(starts_, guarded_start(std::move(type), origin_), origin_, "initial guess");
 }
 
 void TypeRegistry::add_plugin(PluginRecord plugin) {
@@ -143,9 +158,7 @@ std::unique_ptr<LinearSolver> TypeRegistry::make_linear_solver(std::string_view 
   return make_own(require(linear_solvers_, name, "linear solver"), "linear solver", options);
 }
 InitialValues TypeRegistry::make_start(std::string_view name, const Graph& graph) const {
-  const auto& entry = require(starts_, name, "initial guess");
-  const Guarded who{entry.origin, "initial guess", entry.type.name};
-  return guarded([&] { return who.text(); }, entry.type.name, [&] { return entry.type.make(graph); });
+  return require(starts_, name, "initial guess").type.make(graph);
 }
 std::unique_ptr<Algorithm> TypeRegistry::make_algorithm(std::string_view name, const Options& options) const {
   return make_own(require(algorithms_, name, "algorithm"), "algorithm", options);

@@ -32,6 +32,10 @@ namespace WAYMARK_EXPORT waymark {
 /// **Calibration states** (vertices without a place, such as biases) are ordered last. drop_prefix()
 /// keeps those that join a pose that stays.
 ///
+/// **Landmarks** are places without a stamp. In a graph whose poses have stamps, drop_prefix() keeps those
+/// that join a pose that stays, wherever they were inserted. Without any stamps a landmark in the prefix
+/// counts as a pose and is dropped (marginalize_prefix).
+///
 /// Between calls the caller may append to the graph, set values, and fix new vertices. Only
 /// drop_prefix() may remove. The result of an update is that of optimize() from the same values, up
 /// to the rounding of another order of elimination.

@@ -68,6 +68,28 @@ TEST_CASE("graph: an edge is named, and may come with a loss of its own") {
   CHECK_THROWS_AS(builtin_loss("huber", 0), UsageError);
 }
 
+TEST_CASE("graph: information is its lower triangle, and an upper one that says something else is refused") {
+  Graph graph;
+  graph.add_vertex<VertexSe2>(VertexId{1}, {0, 0, 0});
+  graph.add_vertex<VertexSe2>(VertexId{2}, {1, 0, 0});
+  const EdgeType type = make_edge_type<EdgeSe2>();
+  Eigen::Matrix3d lower = Eigen::Vector3d(4, 5, 6).asDiagonal();
+  lower(1, 0) = 2;
+  Eigen::Matrix3d mirrored = lower;
+  mirrored(0, 1) = 2 * (1 + 1e-9);  // an inverse has such rounding
+  for (const Eigen::Matrix3d& usable : {lower, mirrored}) {
+    graph.add_edge(EdgeSe2{{1, 0, 0}}, {0, 1}, usable);
+    CHECK(graph.batch(0).information(graph.edge_count() - 1)(0, 1) == 2);
+  }
+  const Eigen::Matrix3d upper = lower.transpose();
+  const std::string told =
+      "EDGE_SE2: the information matrix is not symmetric: its lower triangle is read, and row 1, column 0 is "
+      "0.000000 there, 2.000000 above the diagonal";
+  CHECK_THROWS_WITH(graph.add_edge(EdgeSe2{{1, 0, 0}}, {0, 1}, upper), told);
+  CHECK_THROWS_WITH(graph.add_edge(type, std::array{0, 1}, std::array{1.0, 0.0, 0.0}, upper), told);
+  CHECK(graph.edge_count() == 2);
+}
+
 TEST_CASE("graph: the library says the version of its headers") {
   CHECK(version() == WAYMARK_VERSION);
   CHECK(version().starts_with(std::to_string(WAYMARK_VERSION_MAJOR) + "." +

@@ -37,6 +37,34 @@ struct EdgeDifference {
   Eigen::Vector2d measured{0, 0};
 };
 
+/// The position of a pose in the frame.
+struct EdgeFixSaysRelative {
+  static constexpr std::string_view kTag = "EDGE_FIX_SAYS_RELATIVE";
+  static constexpr int kErrorDimension = 2;
+  static constexpr bool kRelative = true;
+  using Vertices = VertexList<VertexSe2>;
+  static constexpr auto fields() { return std::array{field<&EdgeFixSaysRelative::measured>("measured")}; }
+  template <typename T>
+  Vector2<T> error(const Pose2<T>& pose) const {
+    return pose.position - constant_vector<T>(measured);
+  }
+  Eigen::Vector2d measured{0, 0};
+};
+
+/// A point from a pose, in the axes of the frame: only a turn shows that it is not relative.
+struct EdgePointSaysRelative {
+  static constexpr std::string_view kTag = "EDGE_POINT_SAYS_RELATIVE";
+  static constexpr int kErrorDimension = 2;
+  static constexpr bool kRelative = true;
+  using Vertices = VertexList<VertexSe2, VertexXy>;
+  static constexpr auto fields() { return std::array{field<&EdgePointSaysRelative::measured>("measured")}; }
+  template <typename T>
+  Vector2<T> error(const Pose2<T>& pose, const Vector2<T>& point) const {
+    return point - pose.position - constant_vector<T>(measured);
+  }
+  Eigen::Vector2d measured{0, 0};
+};
+
 /// The direction in which a pose sees a point, on its right hand where it says left.
 template <bool kTells>
 struct EdgeOfSight {
@@ -151,7 +179,48 @@ TEST_CASE("promises: every registered type and loss keeps them") {
   }
 }
 
-TEST_CASE("promises: an edge that says kRelative and is not is found by its normal equations") {
+TEST_CASE("promises: kRelative of an error that is not relative is found, whatever vertices it joins") {
+  TypeRegistry registry = full_registry();
+  registry.add_edge<EdgeFixSaysRelative>();
+  registry.add_edge<EdgePointSaysRelative>();
+  registry.add_edge<EdgeDifference<true>>();
+  for (const char* tag : {"EDGE_FIX_SAYS_RELATIVE", "EDGE_POINT_SAYS_RELATIVE", "EDGE_SAYS_RELATIVE"}) {
+    INFO(tag);
+    const EdgeTypeCheck liar = check_edge_type(registry, *registry.find_edge(tag));
+    CHECK(liar.worst.error < kGradientTolerance);  // its Jacobians are right
+    CHECK(liar.relative.error > 0.1);
+    CHECK_FALSE(liar.sound());
+  }
+  int relative = 0;
+  const TypeRegistry sound = full_registry();
+  for (const auto& [type, origin] : sound.edges()) {
+    INFO(type.tag);
+    const EdgeTypeCheck check = check_edge_type(sound, type);
+    relative += check.relative.edges > 0 ? 1 : 0;
+    CHECK(check.relative.error < 1e-12);
+  }
+  CHECK(relative >= 6);
+}
+
+TEST_CASE("promises: an edge of a graph that is not relative is named, with the motion and by how much") {
+  Graph graph;
+  graph.add_vertex<VertexSe2>(VertexId{7}, {5, 5, 1});
+  graph.add_vertex<VertexXy>(VertexId{9}, {8, 9});
+  graph.add_edge(EdgeFixSaysRelative{}, {0}, Eigen::Matrix2d::Identity());
+  graph.add_edge(EdgePointSaysRelative{}, {0, 1}, Eigen::Matrix2d::Identity());
+  const RelativeCheck fix = check_relative(graph, 0, 50);
+  CHECK(fix.edges == 1);
+  CHECK_THAT(describe(graph, 0, fix),
+             Contains("EDGE_FIX_SAYS_RELATIVE number 1 (vertex 7): it says kRelative, but row 0 of its error "
+                      "changes by 1 per m if all its vertices move along x"));
+  // A turn about the pose moves the point, 3 m and 4 m away, by (-4, 3) m per rad.
+  const RelativeCheck point = check_relative(graph, 1, 50);
+  CHECK(point.motion == 2);
+  CHECK(std::abs(point.change) == Approx(4));
+  CHECK_THAT(describe(graph, 1, point), Contains("(vertices 7 and 9)") && Contains("-4 per rad"));
+}
+
+TEST_CASE("promises: an edge that says kRelative and is not is found by its normal equations too") {
   TypeRegistry registry = full_registry();
   registry.add_edge<EdgeDifference<true>>();
   registry.add_edge<EdgeDifference<false>>();
@@ -234,6 +303,12 @@ TEST_CASE("promises: wrong losses are named") {
   CHECK_THAT(broken_promises(LossType{"halved", halved, ""}).front(), Contains("rho'(0)"));
   const auto wrong_weight = [](double s, double c) { return LossValue{s, 1 / (1 + s / c), -1 / c}; };
   CHECK_THAT(broken_promises(LossType{"wrong", wrong_weight, ""}).front(), Contains("rho' by differences"));
+  const auto nan_above_one = [](double s, double) { return LossValue{s > 1 ? std::nan("") : s, 1, 0}; };
+  CHECK_THAT(broken_promises(LossType{"nan", nan_above_one, ""}).front(),
+             Contains("rho is nan") && Contains("must be finite"));
+  const auto throwing = [](double, double) -> LossValue { throw std::runtime_error("no table"); };
+  CHECK_THROWS_MATCHES(broken_promises(LossType{"throwing", throwing, ""}), PluginError,
+                       Catch::Matchers::Message("loss 'throwing': threw: no table"));
 }
 
 TEST_CASE("finite: a Jacobian that is not finite is no minimum, and its edge is named") {

@@ -25,6 +25,8 @@ namespace {
   add_taken_edge(registry);
 #elif defined(SAMPLE_WRONG_JACOBIAN)
   add_edge_with_wrong_jacobian(registry);
+#elif defined(SAMPLE_FALSELY_RELATIVE)
+  add_falsely_relative_edge(registry);
 #else
   add_sound_edge(registry);
 #endif

@@ -33,6 +33,10 @@ struct EdgeWithWrongJacobian : EdgeSound {
   }
 };
 
+struct EdgeFalselyRelative : EdgeSound {
+  static constexpr bool kRelative = true;  // a copied line
+};
+
 class Refusing final : public waymark::LinearSolver {
  public:
   void analyze(const waymark::BlockPattern&) override {}
@@ -73,6 +77,10 @@ void add_taken_edge(waymark::TypeRegistry& registry) {
 
 void add_edge_with_wrong_jacobian(waymark::TypeRegistry& registry) {
   registry.add_edge<EdgeWithWrongJacobian>();
+}
+
+void add_falsely_relative_edge(waymark::TypeRegistry& registry) {
+  registry.add_edge<EdgeFalselyRelative>();
 }
 
 void add_refusing_solver(waymark::TypeRegistry& registry) {

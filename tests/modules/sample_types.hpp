@@ -11,6 +11,8 @@ void add_sound_edge(waymark::TypeRegistry& registry);
 void add_taken_edge(waymark::TypeRegistry& registry);
 /// EDGE_SAMPLE with a wrong sign in its Jacobian.
 void add_edge_with_wrong_jacobian(waymark::TypeRegistry& registry);
+/// EDGE_SAMPLE, which says kRelative and is not.
+void add_falsely_relative_edge(waymark::TypeRegistry& registry);
 /// 'refusing', a linear solver that calls every matrix indefinite.
 void add_refusing_solver(waymark::TypeRegistry& registry);
 

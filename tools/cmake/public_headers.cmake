@@ -31,6 +31,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/graph/gradient_check.hpp
   core/graph/graph.hpp
   core/graph/loss.hpp
+  core/graph/relative_check.hpp
   core/graph/scalar_state.hpp
   core/graph/vertex.hpp
   core/graph/vertex_type_check.hpp

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <utility>
 
 #include <waymark/core/base/detail/processor.hpp>
 #include <waymark/core/base/detail/unrolled.hpp>
 #include <waymark/core/base/export.hpp>
+#include <waymark/core/base/guard.hpp>
 #include <waymark/core/graph/detail/edge_contract.hpp>
 #include <waymark/core/graph/detail/robust_information.hpp>
 #include <waymark/core/graph/dual.hpp>
@@ -53,22 +55,20 @@ class EdgeBatch final : public EdgeBatchBase {
   }
 
   void append(const E& edge, const Indices& vertices, const Information& information) {
-    Record& record = records_.emplace_back();
-    record.edge = edge;
-    record.vertices = vertices;
-    finish(record, information);
+    add_record({edge, triangle(information), vertices});
   }
 
   void append(std::span<const VertexIndex> vertices, std::span<const VertexType* const>,
               std::span<const double> fields, const Eigen::MatrixXd& information) override {
-    Record& record = records_.emplace_back();
+    Record record{};
     std::copy_n(vertices.begin(), kArity, record.vertices.begin());
     std::size_t next = 0;
     for (const auto& f : E::fields()) {
       double* data = f.data(record.edge);
       for (int i = 0; i < f.size; ++i) data[i] = fields[next++];
     }
-    finish(record, information);
+    record.information = triangle(information);
+    add_record(std::move(record));
   }
 
   void reserve(std::size_t edges) override { records_.reserve(edges); }
@@ -84,7 +84,8 @@ class EdgeBatch final : public EdgeBatchBase {
 
   [[nodiscard]] std::optional<Sight> sight(std::size_t i) const override {
     if constexpr (requires(const E& edge) { edge.sight(); }) {
-      return records_[i].edge.sight();
+      return guarded([&] { return this->name_in(E::kTag, i, "sight"); }, E::kTag,
+                     [&] { return std::optional<Sight>(records_[i].edge.sight()); });
     } else {
       return std::nullopt;
     }
@@ -136,11 +137,12 @@ class EdgeBatch final : public EdgeBatchBase {
       if (is_blind(record, motion)) continue;
       ErrorVector<kDimension> e;
       Jacobians jacobians;
-      this->named(E::kTag, view, one_edge(static_cast<std::size_t>(&record - records_.data())),
-                  [&] { derive(record, view, e, jacobians); });
       Eigen::Matrix<double, kDimension, 3> moved = Eigen::Matrix<double, kDimension, 3>::Zero();
-      const std::int32_t component =
-          add_motion(record, view, jacobians, motion, moved, std::make_index_sequence<kArity>());
+      std::int32_t component = -1;
+      this->named(E::kTag, view, one_edge(static_cast<std::size_t>(&record - records_.data())), [&] {
+        derive(record, view, e, jacobians);
+        component = add_motion(record, view, jacobians, motion, moved, std::make_index_sequence<kArity>());
+      });
       if (component >= 0) motion.information[component] += moved.transpose() * square(record) * moved;
     }
   }
@@ -173,10 +175,12 @@ class EdgeBatch final : public EdgeBatchBase {
     return lower;
   }
 
-  template <typename Derived>
-  static void finish(Record& record, const Eigen::MatrixBase<Derived>& information) {
-    record.information = triangle(information);
-    if constexpr (requires { record.edge.prepare(); }) record.edge.prepare();
+  /// Appends an edge after its prepare(). One that throws there does not enter.
+  void add_record(Record record) {
+    if constexpr (requires { record.edge.prepare(); })
+      guarded([&] { return this->name_in(E::kTag, records_.size(), "prepare"); }, E::kTag,
+              [&] { record.edge.prepare(); });
+    records_.push_back(std::move(record));
   }
 
   static Information square(const Record& record) {
@@ -518,8 +522,8 @@ class EdgeBatch final : public EdgeBatchBase {
         if (own < 0) return;
         component = own;
         Eigen::Matrix<double, V::kTangentSize, 3> columns;
-        V::rigid_motion(value<I>(record, view), motion.places[own].centre, motion.places[own].extent,
-                        columns.data());
+        detail::rigid_motion_guarded<V>(value<I>(record, view), motion.places[own].centre,
+                                        motion.places[own].extent, columns.data());
         moved += std::get<I>(jacobians) * columns;
       }
     };

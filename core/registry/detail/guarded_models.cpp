@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <waymark/core/base/guard.hpp>
+#include <waymark/core/registry/detail/added_check.hpp>
 
 namespace waymark {
 namespace {
@@ -19,6 +20,15 @@ class GuardedModel : public Model {
     return guarded([&] { return who_.text(); }, who_.name, [&]() -> decltype(auto) { return call(*model_); });
   }
 
+  /// Lets the model add to a graph. What it adds must be usable.
+  template <typename Input>
+  void extend_graph(const Input& input, Graph& graph) {
+    const detail::AddedCheck added(graph);
+    call([&](Model& model) { model.extend(input, graph); });
+    const std::string flaw = added.flaw(graph);
+    if (!flaw.empty()) throw PluginError(who_.text() + ": added " + flaw, who_.name);
+  }
+
  private:
   Guarded who_;
   std::unique_ptr<Model> model_;
@@ -27,9 +37,7 @@ class GuardedModel : public Model {
 class GuardedOdometry final : public GuardedModel<OdometryModel> {
  public:
   using GuardedModel::GuardedModel;
-  void extend(const OdometryInput& input, Graph& graph) override {
-    call([&](OdometryModel& model) { model.extend(input, graph); });
-  }
+  void extend(const OdometryInput& input, Graph& graph) override { extend_graph(input, graph); }
   [[nodiscard]] double standstill_speed() const override {
     return call([](const OdometryModel& model) { return model.standstill_speed(); });
   }
@@ -38,9 +46,7 @@ class GuardedOdometry final : public GuardedModel<OdometryModel> {
 class GuardedModeling final : public GuardedModel<GnssModeling> {
  public:
   using GuardedModel::GuardedModel;
-  void extend(const GnssInput& input, Graph& graph) override {
-    call([&](GnssModeling& model) { model.extend(input, graph); });
-  }
+  void extend(const GnssInput& input, Graph& graph) override { extend_graph(input, graph); }
   [[nodiscard]] std::vector<ExpectedError> lasting_errors(std::span<const Fix> fixes,
                                                           const Graph& minimum) const override {
     return call([&](const GnssModeling& model) { return model.lasting_errors(fixes, minimum); });
@@ -56,9 +62,7 @@ class GuardedSensor final : public GuardedModel<SensorModel> {
   [[nodiscard]] std::vector<RoughPosition> rough_positions(const SensorTable& readings) const override {
     return call([&](const SensorModel& model) { return model.rough_positions(readings); });
   }
-  void extend(const SensorInput& input, Graph& graph) override {
-    call([&](SensorModel& model) { model.extend(input, graph); });
-  }
+  void extend(const SensorInput& input, Graph& graph) override { extend_graph(input, graph); }
 };
 
 class GuardedAlgorithm final : public GuardedModel<Algorithm> {

@@ -16,27 +16,7 @@ int read_int(LineScanner& line, const Expected& expected) {
   return static_cast<int>(value);
 }
 
-/// Tells whether every diagonal number is at least the sum of the other magnitudes in its column.
-/// This is the usual case.
-bool is_diagonally_dominant(const Eigen::MatrixXd& matrix) {
-  for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
-    double rest = matrix(column, column);
-    for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
-      if (row != column) rest -= std::abs(matrix(row, column));
-    }
-    if (!(rest >= 0)) return false;
-  }
-  return true;
-}
-
 }  // namespace
-
-bool is_positive_semidefinite(const Eigen::MatrixXd& information) {
-  if (is_diagonally_dominant(information)) return true;  // by Gershgorin
-  const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(information);
-  const double largest = std::max(std::abs(eigenvalues[0]), eigenvalues[eigenvalues.size() - 1]);
-  return eigenvalues[0] >= -1e-9 * largest;
-}
 
 VertexIndex read_vertex_id(LineScanner& line, const Graph& graph, std::string_view tag) {
   const VertexId id{line.integer({tag, "vertex"})};

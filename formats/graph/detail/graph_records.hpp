@@ -10,11 +10,7 @@
 
 namespace waymark::formats {
 
-/// Tells whether the smallest eigenvalue is at least -1e-9 times the largest. Zeros are legal: they
-/// mean no information on an axis.
-[[nodiscard]] bool is_positive_semidefinite(const Eigen::MatrixXd& matrix);
-
-/// What is said of an information matrix that is not.
+/// What is said of an information matrix that is not positive semidefinite.
 inline constexpr std::string_view kIndefinite =
     "the information matrix is indefinite (an eigenvalue below -1e-9 of the largest)";
 

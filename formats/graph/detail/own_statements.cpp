@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/formats/graph/detail/graph_records.hpp>
 #include <waymark/formats/graph/detail/own_statements.hpp>
 

@@ -135,6 +135,25 @@ TEST_CASE("plugins: check --all gives models a place on the Earth and the other 
   CHECK(rows[1].at("note") == "");
 }
 
+TEST_CASE("derivatives: a false kRelative is named by each check, with and without a graph") {
+  const std::string promise =
+      "EDGE_SAMPLE of sample: it says kRelative, but row 0 of its error changes by 1 per m if all its "
+      "vertices move along x";
+  const std::string module = module_file("falsely_relative");
+  for (const char* how : {"--derivatives", "--all"}) {
+    const RunResult result = run({"check", how, "--plugin", module});
+    INFO(how << result.out);
+    CHECK(result.code == 3);
+    CHECK(contains(result.out, promise));
+  }
+  const std::string graph = write_text(fresh_folder() + "a.graph",
+                                       "GRAPH 1\nVERTEX_SE2 7 1 2 0\nEDGE_SAMPLE 7 3 4 1 0 1\n"
+                                       "EDGE_PRIOR_SE2 7 0 0 0.5 1 0 0 1 0 1\n");
+  const RunResult result = run({"check", graph, "--plugin", module});
+  CHECK(result.code == 3);
+  CHECK(contains(result.out, "problem: EDGE_SAMPLE number 1 (vertex 7): it says kRelative, but row 0"));
+}
+
 TEST_CASE("derivatives: every registered type is checked without a graph, and a wrong Jacobian named") {
   const RunResult sound = run({"check", "--derivatives"});
   INFO(sound.out);

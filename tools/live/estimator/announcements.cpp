@@ -31,11 +31,19 @@ void Announcements::say_once(Stamp now, const std::string& kind, const std::stri
 
 void Announcements::refuse(Stamp now, const std::string& source, const std::string& reason,
                            const std::string& text) {
-  std::size_t& count = counts.refused[source + ": " + reason];
-  ++count;
+  tell_powers(now, reason, source, text, ++counts.refused[source + ": " + reason]);
+}
+
+void Announcements::fail(Stamp now, const std::string& text) {
+  ++counts.failures;
+  tell_powers(now, "failure", "", text, ++failed_[text]);
+}
+
+void Announcements::tell_powers(Stamp now, const std::string& kind, const std::string& source,
+                                const std::string& text, std::size_t count) {
   const double power = std::log10(static_cast<double>(count));
   if (power == std::floor(power))
-    say(now, reason, source, count == 1 ? text : fmt::format("{} (so far {} times)", text, count));
+    say(now, kind, source, count == 1 ? text : fmt::format("{} (so far {} times)", text, count));
 }
 
 void Announcements::change_state(Stamp now, State state, const std::string& why) {

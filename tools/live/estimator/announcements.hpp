@@ -40,6 +40,8 @@ class Announcements {
   void say_once(Stamp now, const std::string& kind, const std::string& text, const std::string& finding);
   /// Counts a sample that is not used. The first one of a kind is told, and then every power of ten.
   void refuse(Stamp now, const std::string& source, const std::string& reason, const std::string& text);
+  /// Counts a solution that failed. The first one of a kind is told, and then every power of ten.
+  void fail(Stamp now, const std::string& text);
   /// Says a change of the state.
   void change_state(Stamp now, State state, const std::string& why);
   void publish(const LivePose& pose) { reports_.emplace_back(pose); }
@@ -51,8 +53,12 @@ class Announcements {
  private:
   State state_ = State::waiting;
   std::vector<Report> reports_;
-  std::set<std::string> told_;    // without their numbers
-  std::optional<Stamp> settled_;  // the last pose that left a window
+  void tell_powers(Stamp now, const std::string& kind, const std::string& source, const std::string& text,
+                   std::size_t count);
+
+  std::set<std::string> told_;                 // without their numbers
+  std::map<std::string, std::size_t> failed_;  // by text
+  std::optional<Stamp> settled_;               // the last pose that left a window
 };
 
 }  // namespace waymark::live

@@ -440,8 +440,7 @@ void Estimator::cycle() {
     failures_ = 0;
     return;
   }
-  ++says_.counts.failures;
-  say("failure", "", "the window has no minimum; the last one is kept");
+  says_.fail(now_, "the window has no minimum; the last one is kept");
   if (++failures_ >= live_.failures_to_reset)
     reset("reset", fmt::format("{} solutions in a row have failed", failures_));
 }
@@ -477,7 +476,7 @@ void Estimator::begin_window(PlacedStretch stretch, std::optional<drive::FirstPo
     if (reading.stamp >= stretch.stamps.front())
       window->add_reading(reading.sensor, reading.stamp, reading.values);
   if (!window->begin(stretch)) {
-    say("failure", "", "the first fixes and the odometry have no common minimum");
+    says_.fail(now_, "the first fixes and the odometry have no common minimum");
     return;
   }
   if (warm_ && !warm_->states.empty()) {

@@ -5,6 +5,7 @@
 #include <waymark/core/covariance/marginals.hpp>
 #include <waymark/core/graph/finite_check.hpp>
 #include <waymark/core/graph/gradient_check.hpp>
+#include <waymark/core/graph/relative_check.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/formats/graph/graph_format.hpp>
 #include <waymark/formats/graph/graph_text.hpp>
@@ -82,6 +83,8 @@ ExitCode check_file(const CheckOptions& options, const TypeRegistry& registry) {
                              {"chi2", text::number_or_null(graph.batch(b).chi2(graph.view()))},
                              {"jacobian_error", gradients.error}});
     if (gradients.error > kGradientTolerance) problems.push_back(describe(graph, b, gradients));
+    const RelativeCheck relative = check_relative(graph, b, kCheckedEdges);
+    if (relative.error > kRelativeTolerance) problems.push_back(describe(graph, b, relative));
   }
   if (!table.rows.empty()) text += text::table_text(table, console.look());
   if (const auto flaw = find_not_finite(graph)) problems.push_back(*flaw);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/formats/graph/detail/graph_records.hpp>
 
 namespace waymark::python {
@@ -54,7 +55,7 @@ std::string fault_of_information(const Eigen::MatrixXd& matrix) {
                            above, row, column, below);
     }
   }
-  return formats::is_positive_semidefinite(matrix) ? std::string() : std::string(formats::kIndefinite);
+  return is_positive_semidefinite(matrix) ? std::string() : std::string(formats::kIndefinite);
 }
 
 }  // namespace

@@ -12,10 +12,12 @@ std::string problem_of(const EdgeTypeCheck& check, const std::string& tag, const
     return fmt::format("{} of {}, scenario '{}': {}", tag, origin, check.scenario,
                        describe(check.graph, 0, check.worst));
   }
+  if (check.relative.error > kRelativeTolerance)
+    return fmt::format("{} of {}: {}", tag, origin, describe(check.relative));
   if (check.normal_error > kNormalTolerance) {
     return fmt::format(
-        "{} of {}: its normal equations differ from those of its Jacobians by {:.1e}: it says kRelative and "
-        "is not unchanged if both vertices move rigidly together, or carry() of their type is wrong",
+        "{} of {}: its normal equations differ from those of its Jacobians by {:.1e}: carry() of its vertex "
+        "type is wrong",
         tag, origin, check.normal_error);
   }
   if (check.sight_error > kSightTolerance) {
@@ -65,6 +67,7 @@ DerivativeReport check_derivatives(const TypeRegistry& registry, const text::Tex
                            {"trials", check.trials},
                            {"not_finite", check.not_finite},
                            {"jacobian_error", check.worst.error},
+                           {"relative_error", check.relative.error},
                            {"normal_error", check.normal_error},
                            {"sight_error", check.sight_error},
                            {"sound", check.sound()}});
