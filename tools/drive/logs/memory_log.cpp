@@ -202,8 +202,12 @@ class Positions {
 std::vector<Stamp> moved(const std::vector<Stamp>& stamps, const LogRequest& request) {
   const std::int64_t offset =
       request.gps_week * formats::kGpsWeekNanoseconds + std::llround(request.time_offset_s * 1e9);
+  formats::WeekCount weeks;
   std::vector<Stamp> result = stamps;
-  for (Stamp& stamp : result) stamp.nanoseconds += offset;
+  for (Stamp& stamp : result) {
+    if (request.time_scale == TimeScale::gps) stamp = weeks.continued(stamp);
+    stamp.nanoseconds += offset;
+  }
   return result;
 }
 
