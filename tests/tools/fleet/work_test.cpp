@@ -17,6 +17,8 @@
 #include <waymark/tools/fleet/work/process_pool.hpp>
 #include <waymark/tools/fleet/work/slurm.hpp>
 
+#include "support/skip.hpp"
+
 namespace fleet_work_test {
 
 using namespace waymark::fleet;
