@@ -24,8 +24,8 @@ constexpr double kSame_s = 1e-3;
 enum Column : std::size_t { kVx, kVy, kYawRate, kSigmaV, kSigmaYawRate };
 
 std::vector<SensorColumn> columns() {
-  return {{"vx", "m/s", "", true, "velocity of the sensor, forward in its own axes"},
-          {"vy", "m/s", "", false, "velocity of the sensor, to the left"},
+  return {{"vx", "m/s", "body", true, "velocity of the sensor, forward in its own axes"},
+          {"vy", "m/s", "body", false, "velocity of the sensor, to the left"},
           {"yaw_rate", "rad/s", "ccw", true, "turning rate seen from above"},
           {"sigma_v", "m/s", "", false, "standard deviation of vx and of vy"},
           {"sigma_yaw_rate", "rad/s", "", false, "standard deviation of the yaw rate"}};

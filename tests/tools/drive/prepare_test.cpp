@@ -180,6 +180,39 @@ TEST_CASE("prepare: fixes outside the odometry are dropped, those on its ends ke
   CHECK(drive.report.fixes_outside_odometry == 2);
 }
 
+TEST_CASE(
+    "prepare: more than a tenth of the fixes outside the odometry is told, unless a stretch is stated") {
+  DriveLogs logs = small_drive();
+  for (int i = 0; i < 8; ++i) logs.gnss[0].data.fixes.push_back(fix_at(121 + i));
+  CHECK(prepare_drive(logs, small_description()).report.warnings.empty());  // fewer than ten are a log's end
+  for (int i = 8; i < 20; ++i) logs.gnss[0].data.fixes.push_back(fix_at(121 + i));
+  const PreparedDrive drive = prepare_drive(logs, small_description());
+  CHECK(drive.report.fixes_outside_odometry == 20);
+  REQUIRE(drive.report.warnings.size() == 1);
+  CHECK_THAT(drive.report.warnings[0],
+             StartsWith("20 of 28 fixes lie up to 30 s behind the odometry: they are left out"));
+  DriveDescription description = small_description();
+  description.to_s = 9;
+  CHECK(prepare_drive(logs, description).report.warnings.empty());
+  for (GeodeticFix& fix : logs.gnss[0].data.fixes)
+    if (fix.stamp.seconds() > 115) fix.stamp = fix.stamp.later(-70);
+  CHECK_THAT(prepare_drive(logs, small_description()).report.warnings.at(0),
+             StartsWith("20 of 28 fixes lie up to 49 s before the odometry"));
+}
+
+TEST_CASE("prepare: samples that share their stamps in great number are told") {
+  DriveLogs logs = small_drive();
+  std::vector<OdometrySample>& samples = logs.odometry.front().front().data.odometry;
+  for (std::size_t i = 1; i < samples.size(); i += 2) {
+    samples[i].stamp = samples[i - 1].stamp;
+    samples[i].speed_mps = 1.01;
+  }
+  const PreparedDrive drive = prepare_drive(logs, small_description());
+  REQUIRE(drive.report.warnings.size() == 1);
+  CHECK_THAT(drive.report.warnings[0],
+             StartsWith("odometry.csv: 50 of 101 odometry samples share their stamp with another reading"));
+}
+
 TEST_CASE("prepare: window and delay") {
   DriveDescription description = small_description();
   description.from_s = 2;

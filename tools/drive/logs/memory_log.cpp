@@ -13,6 +13,7 @@
 #include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/common/position_stream.hpp>
+#include <waymark/formats/logs/detail/common/quantity.hpp>
 #include <waymark/formats/logs/detail/common/table_accuracy.hpp>
 #include <waymark/formats/text/hash.hpp>
 
@@ -84,20 +85,41 @@ void take_complete_odometry(const Columns& columns, const std::vector<Stamp>& st
   for (std::size_t i = 0; i < stamps.size(); ++i) data.odometry.push_back({stamps[i], speed[i], yaw_rate[i]});
 }
 
+/// Names a reading of a row that no sensor has. Empty: there is none.
+std::string garbage_in(const std::vector<SensorColumn>& columns, const std::vector<const double*>& numbers,
+                       std::size_t row, const std::vector<formats::Quantity>& quantities) {
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const formats::Quantity& quantity = *formats::find_quantity(quantities, columns[c].name);
+    const double number = at(numbers[c], row);
+    if (number < quantity.smallest || number > quantity.largest)
+      return fmt::format("{}: {:g} is outside {:g} .. {:g}", columns[c].name, number, quantity.smallest,
+                         quantity.largest);
+  }
+  return {};
+}
+
 /// Takes rows of readings: the columns of a sensor, or the channels of odometry in parts.
-void take_readings(const Columns& columns, const std::vector<SensorColumn>& wanted,
+void take_readings(const Columns& columns, const std::string& name, const LogRequest& request,
                    const std::vector<Stamp>& stamps, LogData& data) {
+  const std::vector<SensorColumn>& wanted = request.readings;
   std::vector<std::string_view> known;
   for (const SensorColumn& column : wanted) known.push_back(column.name);
   columns.require_known(known);
   std::vector<const double*> numbers;
   for (const SensorColumn& column : wanted)
     numbers.push_back(column.required ? columns.required(column.name) : columns.find(column.name));
+  const std::vector<formats::Quantity> quantities = formats::quantities(request);
   data.readings.columns = wanted.size();
-  data.readings.stamps = stamps;
   data.readings.values.reserve(stamps.size() * wanted.size());
-  for (std::size_t i = 0; i < stamps.size(); ++i)
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    if (const std::string garbage = garbage_in(wanted, numbers, i, quantities);
+        request.stream == StreamKind::sensor && !garbage.empty()) {
+      add_corrupt(data, name, i + 1, 1, garbage);
+      continue;
+    }
+    data.readings.stamps.push_back(stamps[i]);
     for (const double* column : numbers) data.readings.values.push_back(at(column, i));
+  }
 }
 
 bool lies_on_earth(double latitude_deg, double longitude_deg) {
@@ -180,8 +202,12 @@ class Positions {
 std::vector<Stamp> moved(const std::vector<Stamp>& stamps, const LogRequest& request) {
   const std::int64_t offset =
       request.gps_week * formats::kGpsWeekNanoseconds + std::llround(request.time_offset_s * 1e9);
+  formats::WeekCount weeks;
   std::vector<Stamp> result = stamps;
-  for (Stamp& stamp : result) stamp.nanoseconds += offset;
+  for (Stamp& stamp : result) {
+    if (request.time_scale == TimeScale::gps) stamp = weeks.continued(stamp);
+    stamp.nanoseconds += offset;
+  }
   return result;
 }
 
@@ -195,7 +221,7 @@ LogData read_memory_log(const MemoryLog& log, const std::string& name, const Log
   if (request.stream == StreamKind::odometry && request.readings.empty()) {
     take_complete_odometry(columns, stamps, data);
   } else if (request.stream == StreamKind::odometry || request.stream == StreamKind::sensor) {
-    take_readings(columns, request.readings, stamps, data);
+    take_readings(columns, name, request, stamps, data);
   } else {
     Positions positions(columns, name, request, data);
     for (std::size_t i = 0; i < stamps.size(); ++i) positions.take(i, stamps[i], data);

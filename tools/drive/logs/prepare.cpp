@@ -154,7 +154,8 @@ void leave_out_wrong(PreparedDrive& drive) {
     const std::vector<SpeedLeap> leaps = find_speed_leaps(source.samples);
     if (!leaps.empty()) drive.report.warnings.push_back(name + warning_of(leaps, source.samples));
     leave_out(leaps, source.samples);
-    for (const FrozenOdometry& time : find_frozen_odometry(source.samples, drive.fixes)) {
+    for (const FrozenOdometry& time :
+         find_frozen_odometry(source.samples, drive.fixes, source.yaw_rate_at_rest.stated_derived)) {
       drive.report.warnings.push_back(name + warning_of(time, start));
       std::erase_if(source.samples, [&](const OdometrySample& sample) {
         return sample.stamp >= time.from && sample.stamp <= time.to;
@@ -205,7 +206,8 @@ void mend_by_fixes(PreparedDrive& drive) {
   if (filled > 0)
     drive.report.notes.push_back(
         fmt::format("the motion of the fixes is assumed in {} of these places", filled));
-  const std::vector<FrozenOdometry> frozen = find_frozen_odometry(drive.odometry, drive.fixes);
+  const std::vector<FrozenOdometry> frozen =
+      find_frozen_odometry(drive.odometry, drive.fixes, drive.yaw_rate_at_rest.stated_derived);
   assume_motion_of_fixes(frozen, drive.fixes, drive.odometry);
   for (const FrozenOdometry& time : frozen)
     drive.report.warnings.push_back(warning_of(time, drive.odometry.front().stamp));

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -92,6 +93,34 @@ void require_short_delays(const DriveDescription& description, std::size_t recei
   }
 }
 
+/// Warns if much of the drive has fixes and no odometry: a log that is cut off, or a clock that is another one at one
+/// end. What a stated stretch of the drive leaves out is meant to be.
+void warn_of_fixes_outside(const std::vector<GeodeticFix>& fixes, const std::vector<OdometrySample>& odometry,
+                           const DriveDescription& description, PrepareReport& report) {
+  constexpr std::size_t kOneIn = 10;
+  constexpr std::size_t kFewest = 10;
+  const auto count = [&](const auto& is_outside) {
+    return static_cast<std::size_t>(std::count_if(fixes.begin(), fixes.end(), is_outside));
+  };
+  const std::size_t before =
+      description.from_s ? 0 : count([&](const auto& fix) { return fix.stamp < odometry.front().stamp; });
+  const std::size_t behind =
+      description.to_s ? 0 : count([&](const auto& fix) { return fix.stamp > odometry.back().stamp; });
+  if (before + behind < kFewest || kOneIn * (before + behind) <= fixes.size()) return;
+  std::string where;
+  if (before > 0)
+    where += fmt::format("{} of {} fixes lie up to {:.0f} s before the odometry", before, fixes.size(),
+                         seconds_between(fixes.front().stamp, odometry.front().stamp));
+  if (behind > 0)
+    where +=
+        fmt::format("{}{} of {} fixes lie up to {:.0f} s behind the odometry", where.empty() ? "" : ", and ",
+                    behind, fixes.size(), seconds_between(odometry.back().stamp, fixes.back().stamp));
+  report.warnings.push_back(fmt::format(
+      "{}: they are left out, because no motion is known there; name all logs of the odometry, or check 'time: "
+      "{{scale, week, offset}}' of both logs",
+      where));
+}
+
 }  // namespace
 
 const GnssConfig& receiver_of(const DriveDescription& description, std::size_t source) {
@@ -130,6 +159,7 @@ std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveDescrip
                                  logs.gnss.empty() ? description.path : logs.gnss.front().file));
 
   const std::string gnss_span = span_text(fixes);
+  warn_of_fixes_outside(fixes, odometry, description, report);
   const std::size_t before = fixes.size();
   std::erase_if(fixes, [&](const GeodeticFix& fix) {
     return fix.stamp < odometry.front().stamp || fix.stamp > odometry.back().stamp;

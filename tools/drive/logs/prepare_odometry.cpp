@@ -11,6 +11,7 @@
 #include <waymark/tools/drive/logs/clock_offsets.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
+#include <waymark/tools/drive/stamps/settle_stamps.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -26,6 +27,7 @@ void assemble_parts(const std::vector<DriveLogs::Log>& logs, const OdometryAssem
     OdometryPart part{log.data.readings, log.file};
     put_on_scale(part.readings.stamps, log, description.scale(),
                  [](Stamp& stamp) -> Stamp& { return stamp; });
+    settle_stamps(part.readings, log.file, report);
     parts.push_back(std::move(part));
   }
   if (parts.empty()) return;
@@ -93,13 +95,27 @@ void drop_impossible_turns(const std::string& source, const std::string& file, S
       fmt::format("{}: {} yaw rates beyond {:g} rad/s", file, impossible, kFastest_radps));
 }
 
+/// Warns of an odometry that loses much by stamps that several samples have, of other readings.
+void warn_of_shared_stamps(const std::string& file, const StreamReport& stream, PrepareReport& report) {
+  constexpr std::size_t kOneIn = 10;
+  if (kOneIn * stream.duplicates_conflicting < stream.read || stream.duplicates_conflicting == 0) return;
+  report.warnings.push_back(fmt::format(
+      "{}: {} of {} odometry samples share their stamp with another reading and are left out: stamps that "
+      "are cut off, or two sources in one log; log all digits of the stamps, or give each source a log of "
+      "its own",
+      file, stream.duplicates_conflicting, stream.read));
+}
+
 /// Reads one source: cleaned, without its delays. Fewer than two samples are no motion.
 void read_source(const std::vector<DriveLogs::Log>& logs, const OdometryConfig& config,
                  const DriveDescription& description, PreparedOdometry& source, StreamReport& stream,
                  PrepareReport& report) {
   std::vector<OdometrySample>& samples = source.samples;
-  for (const DriveLogs::Log& log : logs)
+  for (const DriveLogs::Log& log : logs) {
+    const std::size_t before = samples.size();
     append_log(log.data.odometry, log, description.scale(), samples, stream, report);
+    settle_stamps(samples, before, log.file, report);
+  }
   source.yaw_rate_at_rest.stated_derived = is_from_wheels_or_steering(config.assembly.yaw_rate_from);
   assemble_parts(logs, config.assembly, description, source, report);
   drop_impossible_turns(source.name, logs.front().file, stream, samples, report);
@@ -111,6 +127,7 @@ void read_source(const std::vector<DriveLogs::Log>& logs, const OdometryConfig& 
         return a.speed_mps == b.speed_mps && a.yaw_rate_radps == b.yaw_rate_radps;
       });
   note_cleaning("odometry samples", stream, report);
+  warn_of_shared_stamps(logs.front().file, stream, report);
   if (samples.size() < 2) return;
   if (config.speed_delay_s != 0 || config.yaw_rate_delay_s != 0)
     samples = without_delays(samples, config.speed_delay_s, config.yaw_rate_delay_s);

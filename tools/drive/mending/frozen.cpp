@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include <fmt/format.h>
@@ -221,6 +223,111 @@ std::optional<bool> fixes_agree(std::span<const Fix> fixes, double speed_mps) {
   return way.chords_m - allowed_m < repeated_m && repeated_m < way.steps_m + allowed_m;
 }
 
+using Complex = std::complex<double>;
+
+/// Dead reckoning from the first sample on.
+struct Reckoned {
+  std::vector<Complex> places;  ///< at the fixes, m
+  double length_m = 0;          ///< from the first fix to the last one
+};
+
+/// @param fixes within the time of the samples
+Reckoned reckoned(std::span<const OdometrySample> samples, std::span<const Fix> fixes) {
+  Reckoned result;
+  Complex place = 0;
+  double heading = 0;
+  std::size_t i = 0;
+  const auto ahead = [&](double dt) {
+    return std::polar(samples[i].speed_mps * dt, heading + 0.5 * dt * samples[i].yaw_rate_radps);
+  };
+  for (const Fix& fix : fixes) {
+    for (; i + 1 < samples.size() && samples[i + 1].stamp <= fix.stamp; ++i) {
+      const double dt = seconds_between(samples[i].stamp, samples[i + 1].stamp);
+      place += ahead(dt);
+      heading += dt * samples[i].yaw_rate_radps;
+    }
+    result.places.push_back(place + ahead(seconds_between(samples[i].stamp, fix.stamp)));
+    if (result.places.size() > 1) result.length_m += std::abs(result.places.back() - result.places.end()[-2]);
+  }
+  return result;
+}
+
+void centre(std::vector<Complex>& places) {
+  const Complex sum = std::accumulate(places.begin(), places.end(), Complex(0));
+  for (Complex& place : places) place -= sum / static_cast<double>(places.size());
+}
+
+/// Returns how far fixes lie from a way, m (rms per axis), wherever that way begins, and however long it is.
+double off_shape(std::span<const Fix> fixes, std::vector<Complex> way) {
+  std::vector<Complex> seen;
+  for (const Fix& fix : fixes) seen.emplace_back(fix.position.x(), fix.position.y());
+  centre(way);
+  centre(seen);
+  Complex product = 0;
+  double square = 0;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    product += std::conj(way[i]) * seen[i];
+    square += std::norm(way[i]);
+  }
+  const Complex fit = square > 0 ? product / square : Complex(0);
+  double left = 0;
+  for (std::size_t i = 0; i < way.size(); ++i) left += std::norm(seen[i] - fit * way[i]);
+  return std::sqrt(left / (2 * static_cast<double>(way.size())));
+}
+
+/// How the fixes of some time lie on the way of the samples of that time.
+struct ShapeMatch {
+  double off_m = 0;
+  double length_m = 0;
+  double accuracy_m = 0;  ///< of a fix, in the median
+};
+
+std::vector<ShapeMatch> shape_matches(std::span<const Fix> fixes, std::span<const OdometrySample> samples,
+                                      double window_s) {
+  constexpr std::size_t kFewestOfWindow = 4;
+  std::vector<ShapeMatch> matches;
+  for (std::size_t begin = 0; begin < fixes.size();) {
+    std::size_t end = begin;
+    while (end < fixes.size() && seconds_between(fixes[begin].stamp, fixes[end].stamp) <= window_s) ++end;
+    const std::span<const Fix> window = fixes.subspan(begin, end - begin);
+    begin = end;
+    const double duration_s = seconds_between(window.front().stamp, window.back().stamp);
+    if (window.size() < kFewestOfWindow || duration_s < kShortestChord_s) continue;
+    std::vector<double> accuracies;
+    for (const Fix& fix : window) accuracies.push_back(fix.accuracy_m());
+    Reckoned way = reckoned(samples, window);
+    matches.push_back(
+        {off_shape(window, std::move(way.places)), way.length_m, upper_median(std::move(accuracies))});
+  }
+  return matches;
+}
+
+constexpr double kShape = 0.005;  // of the length: what a turn of 0.13 rad makes
+
+/// Tells whether fixes confirm the turns of samples: they lie on the way of the samples, and are good enough to tell a
+/// turn of a few degrees.
+bool turns_agree(std::span<const Fix> fixes, std::span<const OdometrySample> samples) {
+  constexpr double kAccuracy = 0.01;  // of the length
+  constexpr double kWindow_s = 20;
+  const std::vector<ShapeMatch> matches = shape_matches(fixes, samples, kWindow_s);
+  return !matches.empty() && std::all_of(matches.begin(), matches.end(), [](const ShapeMatch& match) {
+    return match.accuracy_m <= kAccuracy * match.length_m &&
+           match.off_m <= kShape * match.length_m + match.accuracy_m;
+  });
+}
+
+/// Tells whether fixes show other turns than samples of wheels, which may differ by some parts in a thousand.
+bool turns_differ(std::span<const Fix> fixes, std::span<const OdometrySample> samples) {
+  constexpr double kWindow_s = 60;
+  constexpr double kWheels_radpm = 0.003;
+  constexpr double kBow = 0.037;  // rms per axis of a bow, over its length and its turn: 1 / sqrt(720)
+  const std::vector<ShapeMatch> matches = shape_matches(fixes, samples, kWindow_s);
+  return std::any_of(matches.begin(), matches.end(), [](const ShapeMatch& match) {
+    const double of_wheels_m = kBow * kWheels_radpm * match.length_m * match.length_m;
+    return match.off_m > kShape * match.length_m + of_wheels_m + 2 * match.accuracy_m;
+  });
+}
+
 /// Tells whether all readings are those of a vehicle that stands. One that comes back to a place has turned.
 bool all_at_rest(std::span<const OdometrySample> samples) {
   return std::all_of(samples.begin(), samples.end(), [](const OdometrySample& sample) {
@@ -241,7 +348,7 @@ bool come_back(std::span<const Fix> fixes) {
 
 /// Finds times of one speed.
 void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vector<Fix>& fixes,
-                        std::vector<FrozenOdometry>& found) {
+                        bool is_derived, std::vector<FrozenOdometry>& found) {
   const std::vector<Run> runs = runs_of(odometry, &OdometrySample::speed_mps);
   const std::optional<std::size_t> unusual = unusual_run(odometry, runs, &OdometrySample::speed_mps);
   const std::optional<std::size_t> unusual_turns = unusual_run(
@@ -252,8 +359,11 @@ void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vec
     const bool with_turns = all_repeat(samples, &OdometrySample::yaw_rate_radps);
     const bool is_long = with_turns || duration_of(samples) >= kShortestOfOne_s;
     const std::span<const Fix> during = within(fixes, first.stamp, samples.back().stamp);
-    // A speed alone repeats itself on cruise control, or if it has few digits; a gyro that is alive never does.
-    const bool gyro_stopped = with_turns && unusual_turns && samples.size() >= *unusual_turns;
+    // A speed alone repeats itself on cruise control, or if it has few digits; a gyro that is alive never does. One of
+    // few digits may, and then the fixes confirm it. Wheels repeat both on a straight road, unless the fixes bend.
+    const bool both_repeat = with_turns && unusual_turns && samples.size() >= *unusual_turns;
+    const bool gyro_stopped =
+        both_repeat && (is_derived ? turns_differ(during, samples) : !turns_agree(during, samples));
     const std::optional<bool> agrees = fixes_agree(during, std::abs(first.speed_mps));
     if (!gyro_stopped && agrees.value_or(false)) continue;
     const bool is_shown = gyro_stopped || !agrees.value_or(true);
@@ -276,10 +386,10 @@ void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vec
 /// Finds times of one yaw rate while the speed is alive. One from wheels or steering repeats itself on
 /// straight roads.
 void find_frozen_turns(std::span<const OdometrySample> odometry, const std::vector<Fix>& fixes,
-                       std::vector<FrozenOdometry>& found) {
+                       bool is_derived, std::vector<FrozenOdometry>& found) {
   const std::vector<Run> runs = runs_of(odometry, &OdometrySample::yaw_rate_radps);
   const std::optional<std::size_t> unusual = unusual_run(odometry, runs, &OdometrySample::yaw_rate_radps);
-  if (!unusual || yaw_rate_at_rest(odometry).is_derived()) return;
+  if (!unusual || is_derived) return;
   const std::vector<FrozenOdometry> speeds = found;
   for (const Run& run : runs) {
     const auto samples = run.of(odometry);
@@ -289,7 +399,7 @@ void find_frozen_turns(std::span<const OdometrySample> odometry, const std::vect
       return other.with_turns && other.from <= to && from <= other.to;
     });
     if (is_known || duration_of(samples) < kShortestOfOne_s || samples.size() < *unusual) continue;
-    if (!drives(samples)) continue;
+    if (!drives(samples) || turns_agree(within(fixes, from, to), samples)) continue;
     found.push_back({from, to, samples.front().speed_mps, samples.front().yaw_rate_radps,
                      way_of(within(fixes, from, to)).steps_m, false, true});
   }
@@ -298,11 +408,12 @@ void find_frozen_turns(std::span<const OdometrySample> odometry, const std::vect
 }  // namespace
 
 std::vector<FrozenOdometry> find_frozen_odometry(std::span<const OdometrySample> odometry,
-                                                 std::span<const Fix> fixes) {
+                                                 std::span<const Fix> fixes, bool from_wheels) {
   std::vector<FrozenOdometry> found;
   const std::vector<Fix> all = fixes_for_motion(fixes);
-  find_frozen_speeds(odometry, all, found);
-  find_frozen_turns(odometry, all, found);
+  const bool is_derived = yaw_rate_at_rest(odometry, from_wheels).is_derived();
+  find_frozen_speeds(odometry, all, is_derived, found);
+  find_frozen_turns(odometry, all, is_derived, found);
   return found;
 }
 

@@ -26,4 +26,14 @@ Stamp in_nearest_week(Stamp near, double seconds_of_week) {
   return time;
 }
 
+Stamp WeekCount::continued(Stamp time_of_week) {
+  const std::int64_t time = time_of_week.nanoseconds;
+  if (time < 0 || time > kGpsWeekNanoseconds + kSecondNanoseconds) return time_of_week;
+  const std::int64_t fall = last_.nanoseconds - time;
+  if (fall > kGpsWeekNanoseconds / 2) ++weeks_;
+  if (-fall > kGpsWeekNanoseconds / 2 && weeks_ > 0) --weeks_;
+  last_ = time_of_week;
+  return Stamp{time + weeks_ * kGpsWeekNanoseconds};
+}
+
 }  // namespace waymark::formats

@@ -27,4 +27,17 @@ inline constexpr int kLastGpsWeek = 10'000;
 /// Returns the time with these seconds of the week that is nearest to `near`, both on one scale without leap seconds.
 [[nodiscard]] Stamp in_nearest_week(Stamp near, double seconds_of_week);
 
+/// Follows a count of the time of the week over the end of the week. Times outside of one week, as those of dates,
+/// pass unchanged.
+class WeekCount {
+ public:
+  /// Returns the time since the beginning of the first time's week. Each fall by more than half a week begins the next
+  /// one, and a rise by as much takes that back: rows around the end of a week may be in disorder.
+  [[nodiscard]] Stamp continued(Stamp time_of_week);
+
+ private:
+  Stamp last_{};
+  std::int64_t weeks_ = 0;
+};
+
 }  // namespace waymark::formats

@@ -108,6 +108,7 @@ struct SensorKind {
   std::string_view sense;
   std::span<const Unit> units;
   std::span<const Convention> conventions;
+  double largest = kInfinity;  ///< what is beyond it no vehicle does
 };
 constexpr std::array kAngles{Unit{"rad", 1}, Unit{"deg", kDegree}};
 // Coordinates of a place: in the frame, of its UTM zone, WGS84, Earth-centred. The last three are converted
@@ -117,19 +118,20 @@ constexpr std::array kPlaceX{Unit{"m", 1},       Unit{"cm", 1e-2}, Unit{"mm", 1e
 constexpr std::array kPlaceY{Unit{"m", 1},        Unit{"cm", 1e-2}, Unit{"mm", 1e-3},
                              Unit{"northing", 1}, Unit{"lat", 1},   Unit{"ecef_y", 1}};
 constexpr std::array kPlaceHeight{Unit{"m", 1}, Unit{"cm", 1e-2}, Unit{"mm", 1e-3}, Unit{"ecef_z", 1}};
-constexpr std::array<SensorKind, 13> kSensorKinds{{{"1", "", kFlags, {}},
+constexpr std::array<SensorKind, 14> kSensorKinds{{{"1", "", kFlags, {}},
                                                    {"m", "x", kPlaceX, {}},
                                                    {"m", "y", kPlaceY, {}},
                                                    {"m", "height", kPlaceHeight, {}},
                                                    {"m", "", kLengths, {}},
                                                    {"m/s", "", kSpeeds, {}},
+                                                   {"m/s", "body", kSpeeds, {}, kSpeed.largest},
                                                    {"m/s^2", "", kAccelerations, {}},
                                                    {"s", "", kDurations, {}},
                                                    {"rad", "", kAngles, {}},
                                                    {"rad", "ccw_from_east", kHeadings, kHeadingSenses},
                                                    {"rad", "ccw", kHeadings, kTurns},
                                                    {"rad/s", "", kRates, {}},
-                                                   {"rad/s", "ccw", kRates, kTurns}}};
+                                                   {"rad/s", "ccw", kRates, kTurns, 20}}};
 
 template <typename Item>
 const Item* find_named(std::span<const Item> items, std::string_view name) {
@@ -142,7 +144,8 @@ const Item* find_named(std::span<const Item> items, std::string_view name) {
 Quantity sensor_quantity(const SensorColumn& column) {
   for (const SensorKind& kind : kSensorKinds) {
     if (kind.unit != column.unit || kind.sense != column.sense) continue;
-    return {column.name, column.name, column.required, kind.units, kind.conventions, -kInfinity, kInfinity};
+    return {column.name,      column.name,   column.required, kind.units,
+            kind.conventions, -kind.largest, kind.largest};
   }
   throw UsageError("sensor column '" + column.name + "': no unit '" + column.unit + "' of sense '" +
                    column.sense + "'; SensorColumn in core/drive/sample.hpp lists all");
@@ -157,6 +160,10 @@ std::vector<Quantity> channel_quantities(std::span<const Quantity> stream,
     const Quantity* whole = find_named(stream, channel.name);
     own.push_back(whole != nullptr ? *whole : sensor_quantity(channel));
     own.back().required = false;
+    if (whole != nullptr) continue;
+    // One channel that is wrong is no reason to leave out the others of its row.
+    own.back().smallest = -kInfinity;
+    own.back().largest = kInfinity;
   }
   return own;
 }

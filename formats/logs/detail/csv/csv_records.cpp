@@ -221,6 +221,7 @@ std::optional<Stamp> CsvRecords::stamp() {
     complain(*bound_.time, fmt::format("{} is no second of a week", quote_field(field)));
     return std::nullopt;
   }
+  if (request_.time_scale == TimeScale::gps && bound_.date == nullptr) stamp = weeks_.continued(*stamp);
   if (__builtin_add_overflow(stamp->nanoseconds, offset_, &stamp->nanoseconds)) {
     complain(*bound_.time, fmt::format("{} is too large for a stamp", quote_field(field)));
     return std::nullopt;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <waymark/core/drive/log_reader.hpp>
+#include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/common/position_stream.hpp>
 #include <waymark/formats/logs/detail/common/table_accuracy.hpp>
 #include <waymark/formats/logs/detail/csv/csv_bindings.hpp>
@@ -78,6 +79,7 @@ class CsvRecords {
   std::int64_t offset_ = 0;
   Stamp last_of_day_{};                  ///< of a log without a column of dates
   std::int64_t days_ = 0;                ///< midnights since its first time of day
+  WeekCount weeks_;                      ///< of a log whose times may be those of a week
   std::optional<std::size_t> filtered_;  ///< field that decides
   std::size_t unwanted_ = 0;
   std::size_t strange_qualities_ = 0;

@@ -132,6 +132,47 @@ TEST_CASE("frozen: a moving vehicle does not repeat its readings, even if the fi
   CHECK(found[0].from.seconds() == Approx(30));
 }
 
+TEST_CASE(
+    "frozen: one speed and one turn that good fixes have in all are true, and one of two that they have is not") {
+  const auto is_steady = [](double t) { return t >= 29.95 && t < 60; };
+  const auto steady = [&](double turn) {
+    Scene result = testing::winding_scene(
+        100, [&](double t) { return is_steady(t) ? 10 : speed_at(t); },
+        [&](double t) { return is_steady(t) ? turn : yaw_rate_at(t); });
+    for (Fix& fix : result.fixes) fix.covariance = 4e-4 * Eigen::Matrix2d::Identity();
+    return result;
+  };
+  for (const double turn : {0.0, 0.02, -0.2}) {
+    Scene good = steady(turn);
+    CHECK(find_frozen_odometry(good.odometry, good.fixes).empty());
+    // Poor fixes cannot tell.
+    Scene poor = good;
+    for (Fix& fix : poor.fixes) fix.covariance = 9 * Eigen::Matrix2d::Identity();
+    CHECK(find_frozen_odometry(poor.odometry, poor.fixes).size() == 1);
+    // The vehicle bends otherwise, by 0.4 rad in 20 s.
+    for (OdometrySample& sample : good.odometry)
+      if (is_steady(sample.stamp.seconds())) sample.yaw_rate_radps = turn + 0.02;
+    CHECK(find_frozen_odometry(good.odometry, good.fixes).size() == 1);
+  }
+}
+
+TEST_CASE("frozen: wheels that turn alike for a minute are true, unless the fixes bend") {
+  // A robot on straight lanes, with fixes of 0.9 m; its yaw rate is 0 at rest, as one from wheels is.
+  const auto is_lane = [](double t) { return t > 39.95 && t < 100.05; };
+  const auto speed = [&](double t) { return t < 10 ? 0 : is_lane(t) ? 1 : 1 + 0.2 * std::sin(t); };
+  const auto turn = [&](double t) { return t < 10 || is_lane(t) ? 0 : 0.1 * std::sin(0.2 * t); };
+  Scene robot = testing::winding_scene(200, speed, turn);
+  for (Fix& fix : robot.fixes) fix.covariance = 0.81 * Eigen::Matrix2d::Identity();
+  CHECK(find_frozen_odometry(robot.odometry, robot.fixes).empty());
+  // The log repeats a reading where the vehicle drives half a circle.
+  Scene bent = testing::winding_scene(
+      200, speed, [&](double t) { return t > 50 && t < 70 ? std::numbers::pi / 20 : turn(t); });
+  for (OdometrySample& sample : bent.odometry)
+    if (is_lane(sample.stamp.seconds())) sample.yaw_rate_radps = 0;
+  for (Fix& fix : bent.fixes) fix.covariance = 0.81 * Eigen::Matrix2d::Identity();
+  CHECK(find_frozen_odometry(bent.odometry, bent.fixes).size() == 1);
+}
+
 TEST_CASE("frozen: a speed or a yaw rate that repeats itself while the other one is alive is found") {
   Scene speed = scene();
   Scene turns = scene();

@@ -1,0 +1,99 @@
+#include <waymark/tools/drive/stamps/settle_stamps.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <waymark/tools/drive/stamps/bursts.hpp>
+#include <waymark/tools/drive/stamps/steps_back.hpp>
+
+namespace waymark::drive {
+namespace {
+
+SensorTable table_of(const std::vector<OdometrySample>& samples, std::size_t first) {
+  SensorTable table;
+  table.columns = 2;
+  for (std::size_t i = first; i < samples.size(); ++i) {
+    table.stamps.push_back(samples[i].stamp);
+    table.values.push_back(samples[i].speed_mps);
+    table.values.push_back(samples[i].yaw_rate_radps);
+  }
+  return table;
+}
+
+/// The rows of a table that hold a channel.
+struct ChannelRows {
+  SensorTable table;
+  std::vector<std::size_t> rows;  ///< of the whole table
+};
+
+ChannelRows rows_of(const SensorTable& readings, std::size_t column) {
+  ChannelRows channel;
+  channel.table.columns = 1;
+  for (std::size_t row = 0; row < readings.size(); ++row) {
+    const double value = readings.at(row, column);
+    if (!std::isfinite(value)) continue;
+    channel.table.stamps.push_back(readings.stamps[row]);
+    channel.table.values.push_back(value);
+    channel.rows.push_back(row);
+  }
+  return channel;
+}
+
+/// Returns the table of the channels that nearly all rows hold.
+SensorTable common_channels(const SensorTable& readings) {
+  std::vector<std::size_t> common;
+  for (std::size_t c = 0; c < readings.columns; ++c) {
+    std::size_t count = 0;
+    for (std::size_t row = 0; row < readings.size(); ++row) count += std::isfinite(readings.at(row, c));
+    if (20 * count >= 19 * readings.size()) common.push_back(c);
+  }
+  SensorTable table;
+  table.columns = common.size();
+  table.stamps = readings.stamps;
+  for (std::size_t row = 0; row < readings.size(); ++row)
+    for (const std::size_t c : common) table.values.push_back(readings.at(row, c));
+  return table;
+}
+
+}  // namespace
+
+void settle_stamps(std::vector<OdometrySample>& samples, std::size_t first, const std::string& file,
+                   PrepareReport& report) {
+  const SensorTable table = table_of(samples, first);
+  std::vector<char> in_past(table.size(), 0);
+  for (const StepBack& step : find_steps_back(table)) {
+    report.warnings.push_back(warning_of(step, file, table.size()));
+    for (const std::size_t row : step.in_past) in_past[row] = 1;
+  }
+  std::size_t kept = first;
+  for (std::size_t i = 0; i < in_past.size(); ++i)
+    if (in_past[i] == 0) samples[kept++] = samples[first + i];
+  samples.resize(kept);
+  const std::optional<Bursts> bursts = find_bursts(table_of(samples, first));
+  if (!bursts) return;
+  report.warnings.push_back(warning_of(*bursts, file));
+  for (std::size_t i = 0; i < bursts->spread.size(); ++i) samples[first + i].stamp = bursts->spread[i];
+}
+
+void settle_stamps(SensorTable& readings, const std::string& file, PrepareReport& report) {
+  bool is_told = false;
+  for (std::size_t c = 0; c < readings.columns; ++c) {
+    const ChannelRows channel = rows_of(readings, c);
+    for (const StepBack& step : find_steps_back(channel.table)) {
+      // the channels of a log have one clock
+      if (!std::exchange(is_told, true))
+        report.warnings.push_back(warning_of(step, file, channel.table.size()));
+      for (const std::size_t row : step.in_past)
+        readings.values[channel.rows[row] * readings.columns + c] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  const std::optional<Bursts> bursts = find_bursts(common_channels(readings));
+  if (!bursts) return;
+  report.warnings.push_back(warning_of(*bursts, file));
+  if (!bursts->spread.empty()) readings.stamps = bursts->spread;
+}
+
+}  // namespace waymark::drive
