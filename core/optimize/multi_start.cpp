@@ -86,6 +86,7 @@ class MultiStart {
   void try_others();
   void finish_best();
   void describe();
+  void describe_improbable_minimum();
   std::vector<double> make(const StartType& start);
   double chi2_at(const std::vector<double>& values);
 
@@ -115,6 +116,7 @@ class MultiStart {
   std::vector<std::string> tried_;
   std::exception_ptr refusal_;  // the first one
   double acceptable_ = 0;
+  double freedom_ = 0;
   double file_chi2_ = 0;
   bool confirmed_ = false;  // two starts have ended at the best minimum
   int iterations_ = 0;
@@ -171,6 +173,7 @@ void MultiStart::try_from(std::string_view start, const std::vector<double>& val
 void MultiStart::choose_first() {
   const Size size = measure(graph_);
   acceptable_ = acceptable(size);
+  freedom_ = freedom_of(size);
   if (has_many_loops(size) && !starts_.empty() && options_.max_iterations > 0) {
     file_chi2_ = graph_.chi2();
     if (!(file_chi2_ <= acceptable_)) {
@@ -251,6 +254,19 @@ void MultiStart::describe() {
             number("%.6g", trial.final_chi2) + " in " + std::to_string(trial.iterations) + ")";
   }
   notes.push_back(note + "; kept: " + result_.start);
+  describe_improbable_minimum();
+}
+
+/// A false minimum says nothing but its chi2.
+void MultiStart::describe_improbable_minimum() {
+  const Summary& best = result_.summary;
+  if (!best.converged() || !(best.final_chi2 > acceptable_)) return;
+  const double deviations = (best.final_chi2 - freedom_) / std::sqrt(2 * freedom_);
+  result_.summary.notes.push_back(
+      "chi2 " + number("%.6g", best.final_chi2) + " is " + number("%.3g", deviations) +
+      " standard deviations above the " + number("%.0f", freedom_) +
+      " that are expected, which is no chance: edges say too much, some are wrong, or a lower minimum exists "
+      "(another initial guess or algorithm may find it)");
 }
 
 MultiStartSummary MultiStart::run() {

@@ -4,12 +4,14 @@
 #include <limits>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include <waymark/core/base/detail/elapsed.hpp>
 #include <waymark/core/base/detail/thread_pool.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/graph/finite_check.hpp>
 #include <waymark/core/optimize/detail/equations.hpp>
+#include <waymark/core/optimize/detail/jump_watch.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/detail/information_unit.hpp>
 #include <waymark/core/system/gauge.hpp>
@@ -57,6 +59,10 @@ constexpr double kAgain = 0.1;
 constexpr double kChi2Rounding = 1e-12;
 /// A difference so many times larger than rounding says something.
 constexpr double kNoticeable = 10;
+/// Steps beyond a jump of chi2 that may lead below the chi2 before it.
+constexpr int kStepsBeyondJump = 15;
+/// Crossings of one jump that led nowhere, after which the run ends at it.
+constexpr int kFutileCrossings = 3;
 
 class Loop {
  public:
@@ -99,6 +105,9 @@ class Loop {
   double linearize(const std::vector<double>& values);
   void accept(double trial_chi2);
   void retreat();
+  bool crosses_jump(const IterationRecord& record);
+  void judge_crossing();
+  void come_back();
   bool goes_back_from_above();
   void finish_without_step();
   std::string singular_message();
@@ -134,6 +143,9 @@ class Loop {
   bool has_losses_ = false;
   double freedom_ = 0;  // equations less unknowns, >= 0
   Step step_;
+  detail::JumpWatch jumps_;
+  int steps_beyond_jump_ = 0;  // still to take before it is judged; 0: no crossing
+  double chi2_before_jump_ = 0;
   bool exhausted_ = false;                                     // the algorithm had no step left
   bool whole_curvature_ = false;                               // of the losses, in the present linearisation
   double tried_at_ = std::numeric_limits<double>::infinity();  // decrement at which that was given up
@@ -339,6 +351,7 @@ bool Loop::step_once() {
   }
   if (status == ProposalStatus::retreat) {
     retreat();
+    if (steps_beyond_jump_ > 0) come_back();
     return true;
   }
   IterationRecord record = begin_record();
@@ -367,6 +380,11 @@ bool Loop::step_once() {
       algorithm_.accepted(step_, ratio);
       if (!linearized) linearize(values_);
     }
+  } else if (!converged && finite && crosses_jump(record)) {
+    record.accepted = true;
+    accept(trial_chi2);
+    algorithm_.reset();
+    if (!linearized) linearize(values_);
   } else if (!converged) {
     algorithm_.rejected(step_, finite ? ratio : -1);
     if (linearized) linearize(values_);
@@ -399,6 +417,39 @@ void Loop::retreat() {
   chi2_ = best_chi2_;
   linearize(values_);
   last_accepted_ = false;
+}
+
+/// Tells whether a rejected step is taken nevertheless, because chi2 jumps. The steps beyond the jump begin afresh.
+bool Loop::crosses_jump(const IterationRecord& record) {
+  if (steps_beyond_jump_ > 0 || -record.decrease <= decrement_bound()) return false;
+  if (!jumps_.rejected(record.step, record.predicted_decrease - record.decrease)) return false;
+  steps_beyond_jump_ = kStepsBeyondJump;
+  chi2_before_jump_ = best_chi2_;
+  return true;
+}
+
+/// After a step beyond a jump: the crossing was worth it as soon as chi2 is lower than before it. If that does not
+/// happen within a few steps, they are undone.
+void Loop::judge_crossing() {
+  if (best_chi2_ <= chi2_before_jump_ - decrement_bound()) {
+    steps_beyond_jump_ = 0;
+    jumps_.crossed();
+    return;
+  }
+  if (!done_ && --steps_beyond_jump_ > 0) return;
+  done_ = false;
+  retreat();
+  algorithm_.reset();
+  come_back();
+}
+
+/// Counts a crossing that led nowhere. The run ends at a jump that was crossed in vain too often.
+void Loop::come_back() {
+  steps_beyond_jump_ = 0;
+  jumps_.came_back(best_chi2_);
+  if (jumps_.returns() < kFutileCrossings) return;
+  finish(Termination::stalled, text("stalled: chi2 jumps by ", jumps_.height(),
+                                    " at these values, and no lower one was found beyond the jump"));
 }
 
 /// Steps on trial that diverge end where all is flat. The algorithm decides whether it goes back from there.
@@ -451,14 +502,19 @@ Summary Loop::run() {
   algorithm_.reset();
   bool moved = true;
   while (!done_) {
-    if (moved && converged_at_gradient() && !goes_back_from_above()) break;
+    if (moved && converged_at_gradient() && !goes_back_from_above()) {
+      if (steps_beyond_jump_ > 0) judge_crossing();
+      continue;
+    }
     if (options_.cancel != nullptr && options_.cancel->load()) {
       finish(Termination::interrupted, text("interrupted after ", summary_.iterations, " iterations"));
     } else if (summary_.iterations >= options_.max_iterations) {
       finish(Termination::max_iterations, text("not converged after ", summary_.iterations, " iterations"));
     } else {
       const bool whole = whole_curvature_ || converges_slowly();
+      const bool beyond_jump = steps_beyond_jump_ > 0;
       moved = whole ? step_with_whole_curvature() : step_once();
+      if (beyond_jump && steps_beyond_jump_ > 0) judge_crossing();
     }
   }
   // Full steps that went uphill may end at a minimum above earlier values. The values that are then

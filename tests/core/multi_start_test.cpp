@@ -193,6 +193,20 @@ TEST_CASE("default start: a minimum that two starts agree on is believed, howeve
   CHECK(result.summary.final_chi2 > plausible_chi2(graph));
   REQUIRE(result.trials.size() == 2);
   CHECK(result.trials[0].final_chi2 == Approx(result.trials[1].final_chi2).epsilon(1e-6));
+
+  // chi2 has d degrees of freedom and the standard deviation (2 d)^(1/2)
+  double freedom = 0;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v)
+    freedom -= graph.fixed(v) ? 0 : graph.vertex_type(v).tangent_size;
+  for (std::size_t b = 0; b < graph.batch_count(); ++b)
+    freedom += graph.edge_type(b).error_dimension * static_cast<double>(graph.batch(b).size());
+  const std::string& note = result.summary.notes.back();
+  INFO(note);
+  const std::size_t is = note.find(" is ");
+  REQUIRE(is != std::string::npos);
+  CHECK(std::stod(note.substr(is + 4)) ==
+        Approx((result.summary.final_chi2 - freedom) / std::sqrt(2 * freedom)).epsilon(0.005));
+  CHECK(note.find("a lower minimum exists") != std::string::npos);
 }
 
 TEST_CASE("default start: max_iterations bounds all runs together, and a cancelled run is the last") {

@@ -4,8 +4,10 @@
 #include <numeric>
 #include <utility>
 
+#include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/system/foreign_poses.hpp>
 #include <waymark/core/system/structure.hpp>
+#include <waymark/types_se2/start/detail/bodies.hpp>
 #include <waymark/types_se2/start/detail/least_squares.hpp>
 #include <waymark/types_se2/start/detail/points.hpp>
 #include <waymark/types_se2/start/detail/relations.hpp>
@@ -16,10 +18,8 @@ namespace waymark {
 namespace {
 
 using namespace linear_start_detail;
+using detail::at;
 
-std::size_t at(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 Complex complex(const Eigen::Vector2d& v) {
   return {v[0], v[1]};
 }
@@ -60,6 +60,8 @@ class LinearStart {
         relations_(planar_relations(graph)),
         headings_(graph.vertex_count()),
         positions_(graph.vertex_count()),
+        bones_(graph.vertex_count()),
+        turned_(graph.vertex_count(), 0),
         fixed_by_places_(graph.vertex_count(), 0),
         c_(graph.vertex_count()),
         p_(graph.vertex_count()) {}
@@ -76,7 +78,10 @@ class LinearStart {
     read_values();
     if (!solve_headings()) {
       start.note = "the edges do not determine all headings";
-    } else if (!solve_positions()) {
+      return start;
+    }
+    join_by_points();
+    if (!solve_positions(positions_)) {
       start.note = "the edges do not determine all positions";
     } else {
       start.values = values();
@@ -87,6 +92,14 @@ class LinearStart {
  private:
   [[nodiscard]] bool known(VertexIndex v) const { return v == Relation::kWorld || graph_.fixed(v); }
   [[nodiscard]] bool is_pose(VertexIndex v) const { return graph_.vertex_type(v).tag == VertexSe2::kTag; }
+
+  [[nodiscard]] bool is_point(VertexIndex v) const {
+    return v != Relation::kWorld && graph_.vertex_type(v).tag == VertexXy::kTag;
+  }
+  /// Tells whether a relation ties positions, and none of them is that of a point.
+  [[nodiscard]] bool is_bone(const Relation& relation) const {
+    return relation.position_weight > 0 && !is_point(relation.from) && !is_point(relation.to);
+  }
 
   void note(Aspect& aspect, const Relation& relation) {
     for (const VertexIndex v : {relation.from, relation.to}) {
@@ -104,10 +117,12 @@ class LinearStart {
     for (const Relation& relation : relations_) {
       if (relation.heading_weight > 0) note(headings_, relation);
       if (relation.position_weight > 0) note(positions_, relation);
+      if (is_bone(relation)) note(bones_, relation);
     }
     for (const Relation& relation : relations_) {
       if (relation.heading_weight > 0) anchor(headings_, relation);
       if (relation.position_weight > 0) anchor(positions_, relation);
+      if (is_bone(relation)) anchor(bones_, relation);
     }
     // A place without a heading: the positions must give the headings of its part.
     for (const Relation& relation : relations_) {
@@ -243,22 +258,83 @@ class LinearStart {
     return std::find(open.begin(), open.end(), 1) == open.end();
   }
 
-  bool solve_positions() {
+  /// Returns the number of each pose's body: poses that relations join in their headings and positions alike. What the
+  /// joint system of headings and positions has turned already is no body, unless it has its place without points.
+  [[nodiscard]] std::vector<int> find_bodies() {
+    const auto count = static_cast<VertexIndex>(c_.size());
+    std::vector<VertexIndex> bone_of(c_.size(), -1);     // per first vertex of a heading part
+    std::vector<VertexIndex> heading_of(c_.size(), -1);  // per first vertex of a part of bones
+    std::vector<char> torn(c_.size(), 0);                // per first vertex of either
+    for (VertexIndex v = 0; v < count; ++v) {
+      if (!is_pose(v) || known(v)) continue;
+      const VertexIndex heading = headings_.parts.of(v);
+      const VertexIndex bone = bones_.parts.of(v);
+      if (bone_of[at(heading)] < 0) bone_of[at(heading)] = bone;
+      if (heading_of[at(bone)] < 0) heading_of[at(bone)] = heading;
+      if (bone_of[at(heading)] != bone || heading_of[at(bone)] != heading)
+        torn[at(heading)] = torn[at(bone)] = 1;
+    }
+    std::vector<int> bodies(c_.size(), kNoBody);
+    std::vector<int> number(c_.size(), kNoBody);  // per first vertex of a part of bones
+    int next = kWorldBody;
+    for (VertexIndex v = 0; v < count; ++v) {
+      if (!is_pose(v)) continue;
+      const VertexIndex bone = bones_.parts.of(v);
+      if (known(v) || bones_.anchored[at(bone)]) {
+        bodies[at(v)] = kWorldBody;
+      } else if (!in_places(v) && !headings_.anchored[at(headings_.parts.of(v))] && torn[at(bone)] == 0) {
+        if (number[at(bone)] == kNoBody) number[at(bone)] = ++next;
+        bodies[at(v)] = number[at(bone)];
+      }
+    }
+    return bodies;
+  }
+
+  /// Turns and moves parts of which the edges say nothing but the points that they share with others.
+  void join_by_points() {
+    const std::vector<int> bodies = find_bodies();
+    if (!has_several(graph_, bodies)) return;
+    std::vector<Sighting> sightings = planar_sightings(graph_);
+    if (sightings.empty()) return;
+    const std::vector<Quantity> before = p_;
+    if (!solve_positions(bones_)) {
+      p_ = before;
+      return;
+    }
+    std::vector<double> values = graph_.values();
+    for (VertexIndex v = 0; v < static_cast<VertexIndex>(p_.size()); ++v) {
+      if (graph_.vertex_type(v).position == nullptr) continue;
+      double* value = values.data() + graph_.offsets()[at(v)];
+      value[0] = p_[at(v)].value.real();
+      value[1] = p_[at(v)].value.imag();
+      if (is_pose(v)) value[2] = std::arg(c_[at(v)].value);
+    }
+    turned_ = join_bodies(graph_, std::move(sightings), bodies, values);
+    for (std::size_t v = 0; v < p_.size(); ++v) {
+      if (turned_[v] == 0) continue;
+      const double* value = values.data() + graph_.offsets()[v];
+      p_[v].value = {value[0], value[1]};
+      c_[v].value = std::polar(1.0, value[2]);
+    }
+  }
+
+  /// @param aspect all positions or bones
+  bool solve_positions(Aspect& aspect) {
     LeastSquares system;
     for (const VertexIndex v : order_) {
-      if (!positions_.related[at(v)]) continue;
-      const VertexIndex part = positions_.parts.of(v);
-      if (v != part || positions_.anchored[at(part)]) p_[at(v)].index = system.add_unknown();
+      if (!aspect.related[at(v)]) continue;
+      const VertexIndex part = aspect.parts.of(v);
+      if (v != part || aspect.anchored[at(part)]) p_[at(v)].index = system.add_unknown();
     }
     for (const Relation& r : relations_) {
-      if (!(r.position_weight > 0)) continue;
+      if (!(r.position_weight > 0) || (&aspect == &bones_ && !is_bone(r))) continue;
       const Complex offset = c(r.from).value * complex(r.translation) - c(r.to).value * complex(r.lever);
       system.add_equation<2>(r.position_weight, {1, -1}, {p(r.to), p(r.from)}, offset);
     }
     const auto solution = system.solve();
     if (!solution) return false;
     for (Quantity& p : p_) {
-      if (p.index >= 0) p.value = solution->unknowns[at(p.index)];
+      if (p.index >= 0) p = {-1, solution->unknowns[at(p.index)]};
     }
     return true;
   }
@@ -275,11 +351,12 @@ class LinearStart {
     std::vector<double> values = graph_.values();
     for (VertexIndex v = 0; v < static_cast<VertexIndex>(p_.size()); ++v) {
       double* value = values.data() + graph_.offsets()[at(v)];
-      if (!graph_.fixed(v) && positions_.related[at(v)]) {
+      if (!graph_.fixed(v) && (positions_.related[at(v)] != 0 || turned_[at(v)] != 0)) {
         value[0] = (p_[at(v)].value + centre_).real();
         value[1] = (p_[at(v)].value + centre_).imag();
       }
-      if (!graph_.fixed(v) && headings_.related[at(v)]) value[2] = std::arg(c_[at(v)].value);
+      if (!graph_.fixed(v) && (headings_.related[at(v)] != 0 || turned_[at(v)] != 0))
+        value[2] = std::arg(c_[at(v)].value);
     }
     place_points(graph_, planar_sightings(graph_), placed(), values);
     return values;
@@ -293,6 +370,8 @@ class LinearStart {
   std::vector<Relation> relations_;
   Aspect headings_;
   Aspect positions_;
+  Aspect bones_;                       // positions without those of points
+  std::vector<char> turned_;           // per vertex: the points that it shares have told its heading
   std::vector<char> fixed_by_places_;  // per position part's first vertex
   std::vector<VertexIndex> order_;
   Complex centre_ = 0;

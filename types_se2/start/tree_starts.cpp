@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include <waymark/core/system/foreign_poses.hpp>
+#include <waymark/types_se2/start/detail/bodies.hpp>
 #include <waymark/types_se2/start/detail/points.hpp>
 #include <waymark/types_se2/start/detail/relations.hpp>
 #include <waymark/types_se2/start/detail/starts.hpp>
@@ -28,7 +29,8 @@ class Tree {
       : graph_(graph),
         values_(graph.values()),
         branches_(graph.vertex_count()),
-        placed_(graph.vertex_count()) {
+        placed_(graph.vertex_count()),
+        bodies_(graph.vertex_count(), kNoBody) {
     for (const Relation& relation : planar_relations(graph)) {
       if (relation.from == Relation::kWorld || !relation.is_motion()) continue;
       const Pose2<double> motion(relation.translation, relation.turn);
@@ -54,10 +56,15 @@ class Tree {
   }
 
   /// Begins a part of the graph. The vertex keeps its value.
-  void begin_at(VertexIndex root) { placed_[at(root)] = 1; }
+  void begin_at(VertexIndex root) {
+    placed_[at(root)] = 1;
+    if (first_root_ < 0) first_root_ = root;
+    bodies_[at(root)] = graph_.fixed(root) ? kWorldBody : ++last_body_;
+  }
 
   void grow(VertexIndex from, const Branch& branch) {
     placed_[at(branch.to)] = 1;
+    bodies_[at(branch.to)] = bodies_[at(from)];
     if (graph_.fixed(branch.to)) return;
     const double* base = value(from);
     const Pose2<double> pose = compose(Pose2<double>(base[0], base[1], base[2]), branch.motion);
@@ -67,8 +74,19 @@ class Tree {
     moved[2] = wrap_angle(pose.heading);
   }
 
-  /// Places the points that placed poses saw.
-  void place_points() { waymark::place_points(graph_, planar_sightings(graph_), placed_, values_); }
+  /// Moves the parts to where the points that they share are, and places the points that placed poses saw.
+  /// @return the number of poses moved, without the first part
+  std::size_t place_points() {
+    const std::vector<Sighting> sightings = planar_sightings(graph_);
+    std::size_t joined = 0;
+    if (has_several(graph_, bodies_)) {
+      const std::vector<char> moved = join_bodies(graph_, sightings, bodies_, values_);
+      for (std::size_t v = 0; v < moved.size(); ++v)
+        joined += moved[v] != 0 && bodies_[v] != bodies_[at(first_root_)] ? 1 : 0;
+    }
+    waymark::place_points(graph_, sightings, placed_, values_);
+    return joined;
+  }
 
   /// Counts the free poses that can be placed and are not placed yet.
   [[nodiscard]] std::size_t waiting() const {
@@ -88,6 +106,9 @@ class Tree {
   std::vector<double> values_;
   std::vector<std::vector<Branch>> branches_;
   std::vector<char> placed_;
+  std::vector<int> bodies_;  // the parts, by number
+  int last_body_ = kWorldBody;
+  VertexIndex first_root_ = -1;
 };
 
 /// Places poses along consecutive vertices, both ways from the root, and then along the
@@ -164,7 +185,7 @@ InitialValues grow_tree(const Graph& graph, void (*spread)(Tree&, VertexIndex)) 
     start.note = "no edge gives the motion from one pose to another";
     return start;
   }
-  tree.place_points();
+  start.apart -= tree.place_points();
   start.values = tree.take_values();
   return start;
 }

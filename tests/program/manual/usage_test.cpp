@@ -327,6 +327,7 @@ TEST_CASE("usage: optimize says that edges are wrong where the minimum is far ab
   const RunResult wrong = optimized("10 5 1", {});
   CHECK(wrong.code == 0);
   CHECK(contains(wrong.err, "some edges are wrong (try --loss cauchy:1, or --robust gnc)"));
+  CHECK(contains(wrong.err, "or a lower minimum exists (try another --start or --algorithm)"));
   CHECK_FALSE(contains(optimized("19.02 0.01 0", {}).err, "warning"));
   CHECK_FALSE(contains(optimized("10 5 1", {"--loss", "cauchy:1"}).err, "some edges are wrong"));
 }

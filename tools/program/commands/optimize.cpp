@@ -37,7 +37,7 @@ void warn_of_wrong_edges(const Summary& summary, const Graph& graph, bool is_gra
   if (!summary.converged() || !(summary.final_chi2 > kFar * plausible) || has_losses(graph)) return;
   console.warning(fmt::format(
       "chi2 is {:.4g} at the minimum, where edges that are as good as they say have at most {:.4g}: some edges are "
-      "wrong{}, or all of them say too much",
+      "wrong{}, all of them say too much, or a lower minimum exists (try another --start or --algorithm)",
       summary.final_chi2, plausible, is_graduated ? "" : " (try --loss cauchy:1, or --robust gnc)"));
 }
 

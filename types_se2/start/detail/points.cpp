@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/types_se2/se2.hpp>
@@ -85,41 +86,48 @@ Eigen::Vector2d median(const Places& places) {
 
 }  // namespace
 
-void place_points(const Graph& graph, std::vector<Sighting> sightings, const std::vector<char>& placed,
-                  std::vector<double>& values) {
+std::vector<SeenPoint> seen_points(const Graph& graph, std::vector<Sighting> sightings,
+                                   const std::vector<double>& values) {
   const auto value = [&](VertexIndex v) {
     return values.data() + graph.offsets()[static_cast<std::size_t>(v)];
   };
   std::stable_sort(sightings.begin(), sightings.end(),
                    [](const Sighting& a, const Sighting& b) { return a.to < b.to; });
+  std::vector<SeenPoint> points;
   Places places;
   std::vector<Ray> rays;
   std::vector<Circle> circles;
   for (std::size_t k = 0; k < sightings.size(); ++k) {
     const VertexIndex point = sightings[k].to;
-    if (placed[static_cast<std::size_t>(sightings[k].from)] != 0) {
-      const Ray ray = in_frame(value(sightings[k].from), sightings[k].sight);
-      if (sightings[k].sight.has_place())
-        places.emplace_back(ray.origin + ray.way);
-      else if (sightings[k].sight.has_range)
-        circles.push_back({ray.origin, ray.way.norm()});
-      else
-        rays.push_back({ray.origin, ray.way.normalized()});
-    }
+    const Ray ray = in_frame(value(sightings[k].from), sightings[k].sight);
+    if (sightings[k].sight.has_place())
+      places.emplace_back(ray.origin + ray.way);
+    else if (sightings[k].sight.has_range)
+      circles.push_back({ray.origin, ray.way.norm()});
+    else
+      rays.push_back({ray.origin, ray.way.normalized()});
     if (k + 1 < sightings.size() && sightings[k + 1].to == point) continue;
     if (places.empty()) places = crossings(rays);
     if (places.empty()) {
       const Eigen::Vector2d present(value(point)[0], value(point)[1]);
       if (const auto place = place_on_circles(circles, present)) places.push_back(*place);
     }
-    if (!places.empty() && placed[static_cast<std::size_t>(point)] == 0 && !graph.fixed(point)) {
-      const Eigen::Vector2d place = median(places);
-      std::copy_n(place.data(), 2, value(point));
-    }
+    if (!places.empty()) points.push_back({point, median(places)});
     places.clear();
     rays.clear();
     circles.clear();
   }
+  return points;
+}
+
+void place_points(const Graph& graph, std::vector<Sighting> sightings, const std::vector<char>& placed,
+                  std::vector<double>& values) {
+  const auto is_placed = [&](VertexIndex v) { return placed[static_cast<std::size_t>(v)] != 0; };
+  std::erase_if(sightings, [&](const Sighting& seen) {
+    return !is_placed(seen.from) || is_placed(seen.to) || graph.fixed(seen.to);
+  });
+  for (const SeenPoint& seen : seen_points(graph, std::move(sightings), values))
+    std::copy_n(seen.place.data(), 2, values.data() + graph.offsets()[static_cast<std::size_t>(seen.point)]);
 }
 
 }  // namespace waymark
