@@ -22,6 +22,10 @@ bool is_diagonally_dominant(const Eigen::MatrixXd& matrix) {
   return true;
 }
 
+bool has_factor(const Eigen::MatrixXd& matrix) {
+  return matrix.allFinite() && Eigen::LLT<Eigen::MatrixXd>(matrix).info() == Eigen::Success;
+}
+
 }  // namespace
 
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix) {
@@ -35,6 +39,7 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
 
 bool is_positive_semidefinite(const Eigen::MatrixXd& matrix) {
   if (is_diagonally_dominant(matrix)) return true;  // by Gershgorin
+  if (has_factor(matrix)) return true;              // faster than the eigenvalues
   const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(matrix);
   const double largest = std::max(std::abs(eigenvalues[0]), eigenvalues[eigenvalues.size() - 1]);
   return eigenvalues[0] >= -1e-9 * largest;
