@@ -61,6 +61,9 @@ constexpr double kChi2Rounding = 1e-12;
 constexpr double kNoticeable = 10;
 /// Steps beyond a jump of chi2 that may lead below the chi2 before it.
 constexpr int kStepsBeyondJump = 15;
+/// A jump is crossed where so many steps have lowered chi2 by no more than this share.
+constexpr std::size_t kStepsOfProgress = 10;
+constexpr double kProgress = 0.01;
 /// Crossings of one jump that led nowhere, after which the run ends at it.
 constexpr int kFutileCrossings = 3;
 
@@ -106,6 +109,7 @@ class Loop {
   void accept(double trial_chi2);
   void retreat();
   bool crosses_jump(const IterationRecord& record);
+  bool makes_progress() const;
   void judge_crossing();
   void come_back();
   bool goes_back_from_above();
@@ -419,10 +423,21 @@ void Loop::retreat() {
   last_accepted_ = false;
 }
 
+/// Tells whether the last steps have lowered chi2 by a noticeable share, or are too few to tell: then the way on this side is good enough.
+bool Loop::makes_progress() const {
+  const std::vector<IterationRecord>& records = summary_.records;
+  if (records.size() < kStepsOfProgress) return true;
+  double decrease = 0;
+  for (std::size_t i = records.size() - kStepsOfProgress; i < records.size(); ++i)
+    decrease += records[i].accepted ? records[i].decrease : 0;
+  return decrease > kProgress * chi2_;
+}
+
 /// Tells whether a rejected step is taken nevertheless, because chi2 jumps. The steps beyond the jump begin afresh.
 bool Loop::crosses_jump(const IterationRecord& record) {
   if (steps_beyond_jump_ > 0 || -record.decrease <= decrement_bound()) return false;
-  if (!jumps_.rejected(record.step, record.predicted_decrease - record.decrease)) return false;
+  if (!jumps_.rejected(record.step, record.predicted_decrease - record.decrease) || makes_progress())
+    return false;
   steps_beyond_jump_ = kStepsBeyondJump;
   chi2_before_jump_ = best_chi2_;
   return true;
