@@ -9,7 +9,7 @@
 #include <waymark/core/base/detail/elapsed.hpp>
 #include <waymark/core/base/detail/thread_pool.hpp>
 #include <waymark/core/base/error.hpp>
-#include <waymark/core/graph/finite_check.hpp>
+#include <waymark/core/graph/checks/finite_check.hpp>
 #include <waymark/core/optimize/detail/equations.hpp>
 #include <waymark/core/optimize/detail/jump_watch.hpp>
 #include <waymark/core/optimize/optimizer.hpp>

@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include <waymark/core/graph/edge_type_check.hpp>
+#include <waymark/core/graph/checks/edge_type_check.hpp>
 
 #include "support/dense.hpp"
 #include "support/registry.hpp"

@@ -9,7 +9,7 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/core/graph/edge_type_check.hpp>
+#include <waymark/core/graph/checks/edge_type_check.hpp>
 #include <waymark/core/registry/detail/module_file.hpp>
 #include <waymark/core/registry/plugin_loader.hpp>
 

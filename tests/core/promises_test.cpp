@@ -5,9 +5,9 @@
 #include <limits>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/core/graph/edge_type_check.hpp>
-#include <waymark/core/graph/finite_check.hpp>
-#include <waymark/core/graph/vertex_type_check.hpp>
+#include <waymark/core/graph/checks/edge_type_check.hpp>
+#include <waymark/core/graph/checks/finite_check.hpp>
+#include <waymark/core/graph/checks/vertex_type_check.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/registry/plugin.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>

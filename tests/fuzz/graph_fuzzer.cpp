@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/core/graph/finite_check.hpp>
+#include <waymark/core/graph/checks/finite_check.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/formats/graph/graph_format.hpp>
 #include <waymark/plugins/builtin.hpp>

@@ -20,21 +20,21 @@ set(WAYMARK_PUBLIC_HEADERS
   core/drive/sample.hpp
   core/drive/signal_travel.hpp
   core/drive/stamp.hpp
+  core/graph/checks/edge_type_check.hpp
+  core/graph/checks/finite_check.hpp
+  core/graph/checks/gradient_check.hpp
+  core/graph/checks/relative_check.hpp
+  core/graph/checks/vertex_type_check.hpp
   core/graph/dual.hpp
+  core/system/foreign_poses.hpp
   core/graph/edge.hpp
   core/graph/edge_batch.hpp
-  core/graph/edge_type_check.hpp
   core/graph/fields.hpp
-  core/graph/finite_check.hpp
-  core/system/foreign_poses.hpp
   core/graph/gaussian_prior.hpp
-  core/graph/gradient_check.hpp
   core/graph/graph.hpp
   core/graph/loss.hpp
-  core/graph/relative_check.hpp
   core/graph/scalar_state.hpp
   core/graph/vertex.hpp
-  core/graph/vertex_type_check.hpp
   core/linear/block_cholesky.hpp
   core/linear/block_pattern.hpp
   core/linear/block_symbolic.hpp

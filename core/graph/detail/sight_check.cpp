@@ -7,8 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include <waymark/core/graph/checks/edge_type_check.hpp>
 #include <waymark/core/graph/detail/sight_check.hpp>
-#include <waymark/core/graph/edge_type_check.hpp>
 
 namespace waymark::detail {
 namespace {

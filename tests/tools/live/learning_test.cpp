@@ -200,7 +200,9 @@ TEST_CASE("a yaw rate from wheels errs with the speed, which is known before any
   SECTION("and after it") {
     const LiveDrive drive = drive_of(300);
     const double known = late_rms(errors_m(said_by(drive, "rear_wheels"), drive));
-    CHECK(known < 0.8 * late_rms(errors_m(said_by(drive, ""), drive)));
+    const double found = late_rms(errors_m(said_by(drive, ""), drive));  // a bias of the way
+    CHECK(found < 1.1 * known);
+    CHECK(known < 1.1 * found);
   }
 }
 

@@ -134,7 +134,7 @@ double four_fifths(const std::vector<ChordPair>& ways, double angle) {
 }
 
 /// Between fixes further apart (a tunnel) the odometry may have turned by the bias of its gyro.
-constexpr double kGap_s = 10;
+constexpr double kGap_s = 20;
 
 /// Returns the ways to the kept fixes before (step -1) or after (step 1) one of them: as far as 200 m, at least
 /// 20 s (in a shorter time a slide looks like a turned way), at most a minute, and to the next gap.
@@ -225,6 +225,7 @@ Usual usual_of(const std::vector<Residual>& residuals) {
 
 /// Returns what may be a jump that takes longer than from a fix to the next one, the clearest first.
 std::vector<Jump> slides_of(const ReckonedFixes& receiver) {
+  constexpr double kLever = 3;  // a way turned by what is usual on shorter ones
   const std::vector<std::size_t> kept = sparse_fixes(receiver);
   const std::vector<Side> before = sides_of(receiver, kept, -1);
   const std::vector<Side> after = sides_of(receiver, kept, 1);
@@ -234,7 +235,8 @@ std::vector<Jump> slides_of(const ReckonedFixes& receiver) {
     const Usual usual = usual_of(residuals);
     for (const auto& [from, to, by, beside_m, way_m, levers] : residuals) {
       const double usual_m = usual.on(way_m);
-      const double least = std::max(1.0, levers) * std::max(kUnusual * usual_m, least_m(receiver, from, to));
+      const double least =
+          std::max(1.0, levers / kLever) * std::max(kUnusual * usual_m, least_m(receiver, from, to));
       if (by.norm() < least || beside_m > kQuarter * by.norm()) continue;
       slides.push_back({.first = from + 1, .settled = to, .by = by, .usual_m = usual_m});
     }

@@ -3,9 +3,9 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/covariance/marginals.hpp>
-#include <waymark/core/graph/finite_check.hpp>
-#include <waymark/core/graph/gradient_check.hpp>
-#include <waymark/core/graph/relative_check.hpp>
+#include <waymark/core/graph/checks/finite_check.hpp>
+#include <waymark/core/graph/checks/gradient_check.hpp>
+#include <waymark/core/graph/checks/relative_check.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/formats/graph/graph_format.hpp>
 #include <waymark/formats/graph/graph_text.hpp>

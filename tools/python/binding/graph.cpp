@@ -9,7 +9,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/core/covariance/marginals.hpp>
-#include <waymark/core/graph/gradient_check.hpp>
+#include <waymark/core/graph/checks/gradient_check.hpp>
 #include <waymark/formats/graph/detail/foreign_graph.hpp>
 #include <waymark/formats/graph/graph_format.hpp>
 #include <waymark/formats/text/text_file.hpp>

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/core/graph/finite_check.hpp>
+#include <waymark/core/graph/checks/finite_check.hpp>
 #include <waymark/core/linear/block_cholesky.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/tools/drive/coordinates/projection.hpp>

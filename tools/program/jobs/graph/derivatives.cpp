@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <waymark/core/graph/edge_type_check.hpp>
-#include <waymark/core/graph/vertex_type_check.hpp>
+#include <waymark/core/graph/checks/edge_type_check.hpp>
+#include <waymark/core/graph/checks/vertex_type_check.hpp>
 #include <waymark/tools/text/table.hpp>
 
 namespace waymark::program {

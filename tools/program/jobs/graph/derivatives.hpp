@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <waymark/core/graph/edge_type_check.hpp>
+#include <waymark/core/graph/checks/edge_type_check.hpp>
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/tools/text/text_look.hpp>
 
@@ -20,7 +20,7 @@ struct DerivativeReport {
 };
 
 /// Compares the Jacobians of each type with differences of its error
-/// (core/graph/edge_type_check.hpp).
+/// (core/graph/checks/edge_type_check.hpp).
 [[nodiscard]] DerivativeReport check_derivatives(const TypeRegistry& registry,
                                                  const text::TextLook& look = {});
 

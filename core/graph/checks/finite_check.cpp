@@ -1,4 +1,4 @@
-#include <waymark/core/graph/finite_check.hpp>
+#include <waymark/core/graph/checks/finite_check.hpp>
 
 #include <algorithm>
 #include <cmath>

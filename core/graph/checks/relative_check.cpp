@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include <waymark/core/graph/checks/relative_check.hpp>
 #include <waymark/core/graph/detail/edge_name.hpp>
-#include <waymark/core/graph/relative_check.hpp>
 
 namespace waymark {
 namespace {

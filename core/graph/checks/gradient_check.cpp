@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include <waymark/core/graph/gradient_check.hpp>
+#include <waymark/core/graph/checks/gradient_check.hpp>
 
 namespace waymark {
 namespace {

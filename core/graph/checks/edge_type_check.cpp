@@ -6,8 +6,8 @@
 #include <utility>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/graph/checks/edge_type_check.hpp>
 #include <waymark/core/graph/detail/sight_check.hpp>
-#include <waymark/core/graph/edge_type_check.hpp>
 #include <waymark/core/system/normal_equations.hpp>
 
 namespace waymark {

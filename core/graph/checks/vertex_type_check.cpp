@@ -1,4 +1,4 @@
-#include <waymark/core/graph/vertex_type_check.hpp>
+#include <waymark/core/graph/checks/vertex_type_check.hpp>
 
 #include <algorithm>
 #include <cmath>

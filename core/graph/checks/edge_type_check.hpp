@@ -7,8 +7,8 @@
 #include <string>
 
 #include <waymark/core/base/export.hpp>
-#include <waymark/core/graph/gradient_check.hpp>
-#include <waymark/core/graph/relative_check.hpp>
+#include <waymark/core/graph/checks/gradient_check.hpp>
+#include <waymark/core/graph/checks/relative_check.hpp>
 #include <waymark/core/registry/registry.hpp>
 
 namespace WAYMARK_EXPORT waymark {
