@@ -102,12 +102,6 @@ double turns_apart(const ChordPair& one, const ChordPair& next) {
   return wrap_angle(angle_between(one.odometry, next.odometry) - angle_between(one.gnss, next.gnss));
 }
 
-bool YawBias::is_large() const {
-  constexpr double kOfTime_radps = 0.01;
-  constexpr double kOfWay_radpm = 0.001;
-  return is_significant() && (std::abs(radps) > kOfTime_radps || std::abs(radpm) > kOfWay_radpm);
-}
-
 YawBias bias_of(std::span<const ChordPair> chords) {
   constexpr std::size_t kFewest = 10;
   constexpr double kLeast_m = 1e-3;

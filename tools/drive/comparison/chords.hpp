@@ -49,20 +49,6 @@ struct ChordPair {
 /// chords themselves, whatever the headings along them.
 [[nodiscard]] double turns_apart(const ChordPair& one, const ChordPair& next);
 
-/// A constant by which the odometry turns more than the fixes: of time or of the way, whichever the chords fit better.
-struct YawBias {
-  double radps = 0;
-  double radpm = 0;
-  double sigmas = 0;  ///< how significant it is
-
-  [[nodiscard]] bool is_significant() const { return sigmas > 5; }
-
-  /// Whether it is significant, and poses that are reckoned with it are so bent that they cannot be laid along fixes.
-  [[nodiscard]] bool is_large() const;
-
-  /// Returns it with a factor.
-  [[nodiscard]] YawError with(double factor) const { return {factor, radps, radpm}; }
-};
 /// Returns the bias that the chords show in the median; none for few.
 [[nodiscard]] YawBias bias_of(std::span<const ChordPair> chords);
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/detail/median.hpp>
+#include <waymark/tools/drive/estimation/antenna_place.hpp>
 #include <waymark/tools/drive/estimation/latency.hpp>
 #include <waymark/tools/drive/estimation/noise_spread.hpp>
 #include <waymark/tools/drive/estimation/scale_priors.hpp>
@@ -207,6 +208,14 @@ std::string words_for_late_odometry(double late_s) {
       late_s, -late_s);
 }
 
+/// Returns where the antenna is, if nobody has stated it and the drive shows it.
+std::optional<AntennaPlace> antenna_of(const ModeledDrive& modeled, const PreparedDrive& drive,
+                                       const TypeRegistry& registry) {
+  if (modeled.noise.parameters.empty() || modeled.noise.is_poor_odometry(modeled.placed.odometry_name))
+    return std::nullopt;
+  return find_antenna_place(modeled.placed, drive.sensors, modeled.settings, registry);
+}
+
 std::string words_for_antenna(const AntennaPlace& antenna, const std::string& receiver) {
   const auto side = [](double value, const char* positive, const char* negative) {
     return value < 0 ? negative : positive;
@@ -340,12 +349,6 @@ ModeledDrive Fusion::on_clock_of_fixes(ModeledDrive modeled, const FusionSetting
   return modeled;
 }
 
-std::optional<AntennaPlace> Fusion::antenna_of(const ModeledDrive& modeled) const {
-  if (modeled.noise.parameters.empty() || modeled.noise.is_poor_odometry(modeled.placed.odometry_name))
-    return std::nullopt;
-  return find_antenna_place(modeled.placed, drive_.sensors, modeled.settings, registry_);
-}
-
 void Fusion::add_deviations(ModeledDrive& modeled) const {
   if (modeled.noise.parameters.empty()) return;
   find_deviations(modeled.placed, drive_.sensors, modeled.decision, registry_, modeled.noise, between_);
@@ -361,7 +364,7 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   refuse_misreading(placed(decision_on(settings)));
   ModeledDrive modeled = searched(settings);
   // An antenna that is elsewhere looks like a clock that is wrong.
-  if (const std::optional<AntennaPlace> antenna = antenna_of(modeled)) {
+  if (const std::optional<AntennaPlace> antenna = antenna_of(modeled, drive_, registry_)) {
     modeled.placed.warnings.push_back(words_for_antenna(*antenna, receiver_name(modeled.placed, 0)));
     modeled.odometry_late_s = 0;
   } else {

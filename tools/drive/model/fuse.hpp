@@ -34,7 +34,6 @@
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
-#include <waymark/tools/drive/estimation/antenna_place.hpp>
 #include <waymark/tools/drive/estimation/clock_drift.hpp>
 #include <waymark/tools/drive/estimation/noise.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
@@ -116,8 +115,6 @@ class Fusion {
   /// As estimated(), without the deviations of the noise.
   [[nodiscard]] ModeledDrive searched(const FusionSettings& settings);
   void add_deviations(ModeledDrive& modeled) const;
-  /// Returns where the antenna is, if nobody has stated it and the drive shows it.
-  [[nodiscard]] std::optional<AntennaPlace> antenna_of(const ModeledDrive& modeled) const;
   /// Returns the drive with the odometry on the clock of the fixes, if its own one drifts and that is more probable. A
   /// drift that the noise hid is found in steps.
   [[nodiscard]] ModeledDrive on_clock_of_fixes(ModeledDrive modeled, const FusionSettings& settings);

@@ -15,7 +15,6 @@
 #include <Eigen/Core>
 
 #include <waymark/core/registry/registry.hpp>
-#include <waymark/tools/drive/comparison/chords.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/model/motion_runs.hpp>

@@ -214,6 +214,12 @@ std::vector<Eigen::Vector3d> reckoned_antenna(const Timeline& timeline, std::spa
   return antenna_at_fixes(timeline, dead_reckon(timeline, Eigen::Vector3d::Zero(), standstill_mps), fixes);
 }
 
+bool YawBias::is_large() const {
+  constexpr double kOfTime_radps = 0.01;
+  constexpr double kOfWay_radpm = 0.001;
+  return is_significant() && (std::abs(radps) > kOfTime_radps || std::abs(radpm) > kOfWay_radpm);
+}
+
 Timeline without_error(Timeline timeline, const YawError& error) {
   for (Interval& interval : timeline.intervals) {
     if (interval.bridged) continue;

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <waymark/tools/drive/estimation/antenna_place.hpp>
 #include <waymark/tools/drive/model/fuse.hpp>
 #include <waymark/types_se2/se2.hpp>
 
