@@ -123,15 +123,18 @@ YawBias bias_of(std::span<const ChordPair> chords) {
 
 ReckonedFixes without_error(ReckonedFixes receiver, const YawError& error) {
   const std::vector<Eigen::Vector3d> bent = receiver.antenna;
+  constexpr double kAtRest_mps = 0.05;
   double way_m = 0;
-  double turned = 0;  // at the previous fix
+  double moving_s = 0;  // an odometry that stands does not turn
+  double turned = 0;    // at the previous fix
   for (std::size_t i = 0; i < bent.size(); ++i) {
     const Eigen::Vector2d step = bent[i].head<2>() - bent[i == 0 ? 0 : i - 1].head<2>();
     const bool is_forward = rotate(-bent[i][2], step).x() >= 0;
     way_m += is_forward ? step.norm() : -step.norm();
-    const double since_s = seconds_between(receiver.fixes.front().stamp, receiver.fixes[i].stamp);
+    const double step_s = i == 0 ? 0 : seconds_between(receiver.fixes[i - 1].stamp, receiver.fixes[i].stamp);
+    if (step.norm() > kAtRest_mps * step_s) moving_s += step_s;
     const double turns =
-        bent[i][2] * (1 / error.factor - 1) - error.bias_radps * since_s - error.bias_radpm * way_m;
+        bent[i][2] * (1 / error.factor - 1) - error.bias_radps * moving_s - error.bias_radpm * way_m;
     if (i > 0)
       receiver.antenna[i].head<2>() =
           receiver.antenna[i - 1].head<2>() + rotate(0.5 * (turned + turns), step);

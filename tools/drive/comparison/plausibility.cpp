@@ -210,7 +210,7 @@ Shape shape_of(const ReckonedFixes& receiver) {
     shape.sentences.push_back(in_words(*factor_of_turns));
   }
   const YawBias bias = bias_of(legs_of(without_error(receiver, {.factor = factor})));
-  if (bias.is_significant()) shape.yaw_bias = bias;
+  if (bias.is_large()) shape.yaw_bias = bias;
   const ReckonedFixes straight = without_error(receiver, bias.with(factor));
   const std::vector<double> ways = way_factors(straight);
   const std::vector<double> chords = chord_factors(straight);

@@ -52,7 +52,7 @@ struct Shape {
   /// of the odometry's distances, if it is significant and beyond the prior of speed_scale
   std::optional<double> speed_factor{};
   std::optional<double> turn_factor{};  ///< of the odometry's turns, if it is significant (turn_factor.hpp)
-  std::optional<YawBias> yaw_bias{};    ///< what is left of them, if it is significant
+  std::optional<YawBias> yaw_bias{};    ///< what is left of them, if it is large
 };
 /// Compares turns and distances alone. @param fixes of one receiver @param antenna as above
 [[nodiscard]] Shape compare_shapes(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna);

@@ -46,11 +46,8 @@ double cost_of_place(unsigned, const double* at, double*, void* data) {
 
 /// Finds the least cost without derivatives (BOBYQA, Powell 2009): far from it the errors of precise fixes cost the same
 /// wherever the antenna is.
-Unknowns least_of(TrialDrive& trial) {
+Unknowns least_of(const Unknowns& bounds, TrialDrive& trial) {
   constexpr int kMostEvaluations = 60;
-  constexpr double kFarthest_m = 10;
-  constexpr double kLatest_s = 1;
-  const Unknowns bounds(kFarthest_m, kFarthest_m, kLatest_s);
   const Unknowns low = -bounds;
   const Unknowns first(0.5, 0.5, 0.05);
   const Unknowns near(0.01, 0.01, 0.001);
@@ -100,8 +97,8 @@ Unknowns steps_of(const PlacedDrive& drive) {
   return {step_m, step_m, step_m / kUsualSpeed_mps};
 }
 
-bool may_be_found(const PlacedDrive& placed) {
-  return !placed.fixes.empty() && placed.receivers.size() == 1 &&
+bool may_be_found(const PlacedDrive& placed, const FusionSettings& settings) {
+  return settings.lever_arm && !placed.fixes.empty() && placed.receivers.size() == 1 &&
          std::all_of(placed.fixes.begin(), placed.fixes.end(),
                      [](const Fix& fix) { return fix.antenna_m == Eigen::Vector2d::Zero(); });
 }
@@ -110,7 +107,8 @@ bool may_be_found(const PlacedDrive& placed) {
 
 std::optional<AntennaPlace> find_antenna_place(const PlacedDrive& placed,
                                                std::span<const PreparedSensor> sensors,
-                                               const FusionSettings& settings, const TypeRegistry& registry) {
+                                               const FusionSettings& settings, const TypeRegistry& registry,
+                                               const std::function<void()>& between) {
   constexpr double kFixPeriod_s = 2;
   constexpr double kNodePeriod_s = 0.5;
   constexpr std::size_t kWindows = 12;
@@ -118,15 +116,19 @@ std::optional<AntennaPlace> find_antenna_place(const PlacedDrive& placed,
   constexpr double kGain = 15;
   constexpr double kSigmas = 4;
   constexpr double kLeast_m = 0.1;
-  if (!may_be_found(placed)) return std::nullopt;
+  constexpr double kFarthest_m = 10;
+  constexpr double kLatest_s = 1;
+  if (!may_be_found(placed, settings)) return std::nullopt;
   TrialDrive trial(sample_of(coarsen(placed, sensors, kFixPeriod_s, kNodePeriod_s), kWindows, kWindow_s),
-                   settings, registry, {});
+                   settings, registry, between);
   const double unmoved = cost_at(Unknowns::Zero(), trial);
-  const Unknowns best = least_of(trial);
+  const Unknowns bounds(kFarthest_m, kFarthest_m, kLatest_s);
+  const Unknowns best = least_of(bounds, trial);
+  const bool is_inside = (best.cwiseAbs().array() < 0.9 * bounds.array()).all();
   const double least = cost_at(best, trial);
   const double spread = trial.spread(least);
   const double size_m = best.head<2>().norm();
-  if (!(unmoved - least > kGain * spread * spread) || !(size_m > kLeast_m)) return std::nullopt;
+  if (!(unmoved - least > kGain * spread * spread) || !(size_m > kLeast_m) || !is_inside) return std::nullopt;
   const Eigen::Matrix3d covariance =
       spread * spread * curvature_at(best, steps_of(trial.drive()), trial).inverse();
   const AntennaPlace antenna{best.head<2>(), covariance.diagonal().head<2>().cwiseSqrt()};

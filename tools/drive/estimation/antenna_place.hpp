@@ -3,6 +3,7 @@
 /// place is not known that looks like fixes that are late or early.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -21,11 +22,13 @@ struct AntennaPlace {
 
 /// Finds the place that makes the fixes most probable, together with a delay of them, on a sample of the drive.
 /// @param placed with the time offsets of its fixes @param settings with the noise
-/// @return empty if an antenna is stated, if there are several receivers, or if the place is not significant: half chi2
-/// falls by less than 15, or it is known to a quarter of its size only, or it is no decimetre
+/// @param between called between its fusions; what it throws ends the search. Empty: nothing is called
+/// @return empty if an antenna is stated elsewhere than at that point, if there are several receivers, or if the place is not significant: half chi2
+/// falls by less than 15, or it is known to a quarter of its size only, or it is no decimetre, or beyond 9 m
 [[nodiscard]] std::optional<AntennaPlace> find_antenna_place(const PlacedDrive& placed,
                                                              std::span<const PreparedSensor> sensors,
                                                              const FusionSettings& settings,
-                                                             const TypeRegistry& registry);
+                                                             const TypeRegistry& registry,
+                                                             const std::function<void()>& between = {});
 
 }  // namespace waymark::drive

@@ -210,10 +210,10 @@ std::string words_for_late_odometry(double late_s) {
 
 /// Returns where the antenna is, if nobody has stated it and the drive shows it.
 std::optional<AntennaPlace> antenna_of(const ModeledDrive& modeled, const PreparedDrive& drive,
-                                       const TypeRegistry& registry) {
+                                       const TypeRegistry& registry, const std::function<void()>& between) {
   if (modeled.noise.parameters.empty() || modeled.noise.is_poor_odometry(modeled.placed.odometry_name))
     return std::nullopt;
-  return find_antenna_place(modeled.placed, drive.sensors, modeled.settings, registry);
+  return find_antenna_place(modeled.placed, drive.sensors, modeled.settings, registry, between);
 }
 
 std::string words_for_antenna(const AntennaPlace& antenna, const std::string& receiver) {
@@ -364,7 +364,7 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   refuse_misreading(placed(decision_on(settings)));
   ModeledDrive modeled = searched(settings);
   // An antenna that is elsewhere looks like a clock that is wrong.
-  if (const std::optional<AntennaPlace> antenna = antenna_of(modeled, drive_, registry_)) {
+  if (const std::optional<AntennaPlace> antenna = antenna_of(modeled, drive_, registry_, between_)) {
     modeled.placed.warnings.push_back(words_for_antenna(*antenna, receiver_name(modeled.placed, 0)));
     modeled.odometry_late_s = 0;
   } else {

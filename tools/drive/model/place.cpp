@@ -207,7 +207,7 @@ void compare_with_fixes(const PreparedDrive& drive, std::span<const Eigen::Vecto
       of_selected<Eigen::Vector3d>(placed.fixes, antenna, is_used), place, placed.receivers, of_several);
   placed.speed_factor = compared.speed_factor;
   placed.turn_factor = compared.turn_factor;
-  if (compared.yaw_bias && compared.yaw_bias->is_large()) placed.yaw_bias = compared.yaw_bias;
+  placed.yaw_bias = compared.yaw_bias;
   for (std::string& warning : compared.warnings) placed.warnings.push_back(std::move(warning));
 }
 

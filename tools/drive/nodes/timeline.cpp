@@ -215,9 +215,10 @@ std::vector<Eigen::Vector3d> reckoned_antenna(const Timeline& timeline, std::spa
 }
 
 bool YawBias::is_large() const {
+  constexpr double kSigmas = 5;
   constexpr double kOfTime_radps = 0.01;
   constexpr double kOfWay_radpm = 0.001;
-  return is_significant() && (std::abs(radps) > kOfTime_radps || std::abs(radpm) > kOfWay_radpm);
+  return sigmas > kSigmas && (std::abs(radps) > kOfTime_radps || std::abs(radpm) > kOfWay_radpm);
 }
 
 Timeline without_error(Timeline timeline, const YawError& error) {

@@ -92,8 +92,6 @@ struct YawBias {
   double radpm = 0;
   double sigmas = 0;  ///< how significant it is
 
-  [[nodiscard]] bool is_significant() const { return sigmas > 5; }
-
   /// Whether it is significant, and poses that are reckoned with it are so bent that they cannot be laid along fixes.
   [[nodiscard]] bool is_large() const;
 

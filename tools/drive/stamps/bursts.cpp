@@ -75,12 +75,13 @@ bool change_within(const SensorTable& rows, std::size_t column, const std::vecto
   return inside > 0 && across >= kAddUp * inside && between <= kBetween * inside;
 }
 
-/// Tells whether all stamps are whole multiples of a decimal unit that is the period.
+/// Tells whether all stamps are whole multiples of a decimal unit that is the period, but for a stated offset.
 bool cut_off(const std::vector<Stamp>& stamps, double period_s) {
   for (std::int64_t unit = 1'000'000'000; unit >= 1'000'000; unit /= 10) {
     if (std::abs(period_s * 1e9 / static_cast<double>(unit) - 1) > 0.1) continue;
-    return std::all_of(stamps.begin(), stamps.end(),
-                       [unit](Stamp stamp) { return stamp.nanoseconds % unit == 0; });
+    return std::all_of(stamps.begin(), stamps.end(), [&](Stamp stamp) {
+      return (stamp.nanoseconds - stamps.front().nanoseconds) % unit == 0;
+    });
   }
   return false;
 }

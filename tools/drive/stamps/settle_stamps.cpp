@@ -90,7 +90,9 @@ void settle_stamps(SensorTable& readings, const std::string& file, PrepareReport
         readings.values[channel.rows[row] * readings.columns + c] = std::numeric_limits<double>::quiet_NaN();
     }
   }
-  const std::optional<Bursts> bursts = find_bursts(common_channels(readings));
+  const auto common = common_channels(readings);
+  if (common.columns == 0) return;  // frames of several channels one after another are no bursts
+  const std::optional<Bursts> bursts = find_bursts(common);
   if (!bursts) return;
   report.warnings.push_back(warning_of(*bursts, file));
   if (!bursts->spread.empty()) readings.stamps = bursts->spread;
