@@ -423,7 +423,8 @@ void Loop::retreat() {
   last_accepted_ = false;
 }
 
-/// Tells whether the last steps have lowered chi2 by a noticeable share, or are too few to tell: then the way on this side is good enough.
+/// Tells whether the last steps have lowered chi2 by a noticeable share, or are too few to tell: then the way on this
+/// side is good enough.
 bool Loop::makes_progress() const {
   const std::vector<IterationRecord>& records = summary_.records;
   if (records.size() < kStepsOfProgress) return true;
@@ -453,6 +454,7 @@ void Loop::judge_crossing() {
   }
   if (!done_ && --steps_beyond_jump_ > 0) return;
   done_ = false;
+  exhausted_ = false;
   retreat();
   algorithm_.reset();
   come_back();

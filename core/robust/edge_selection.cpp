@@ -1,5 +1,5 @@
 #include <limits>
-#include <map>
+#include <numeric>
 #include <utility>
 
 #include <waymark/core/linear/dense_decompositions.hpp>
@@ -111,7 +111,11 @@ namespace {
 class Parts {
  public:
   explicit Parts(const Graph& graph)
-      : graph_(graph), part_(detail::find_components(graph)), motions_(graph.vertex_count(), 0) {
+      : graph_(graph),
+        part_(detail::find_components(graph)),
+        motions_(graph.vertex_count(), 0),
+        joined_(graph.vertex_count()) {
+    std::iota(joined_.begin(), joined_.end(), 0);
     const std::vector<char> held = find_gauge(graph, PartlyAnchored::hold_vertex).held;
     const std::vector<char> has_edge = vertices_with_edges(graph);
     for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
@@ -143,18 +147,22 @@ class Parts {
   static constexpr std::int32_t kFixed = -1;  // all fixed vertices
 
   static std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
-  [[nodiscard]] std::int32_t part_of(VertexIndex v) const {
+  [[nodiscard]] std::int32_t part_of(VertexIndex v) {
     std::int32_t part = graph_.fixed(v) ? kFixed : part_[at(v)];
-    for (auto to = joined_.find(part); to != joined_.end(); to = joined_.find(part)) part = to->second;
+    while (part != kFixed && joined_[at(part)] != part) {
+      std::int32_t& next = joined_[at(part)];
+      if (next != kFixed) next = joined_[at(next)];  // chains stay short
+      part = next;
+    }
     return part;
   }
   /// Returns how many motions of a part nothing stops; 0: it is anchored.
   [[nodiscard]] int motions_of(std::int32_t part) const { return part == kFixed ? 0 : motions_[at(part)]; }
 
   const Graph& graph_;
-  std::vector<std::int32_t> part_;  // per vertex
-  std::vector<int> motions_;        // per part
-  std::map<std::int32_t, std::int32_t> joined_;
+  std::vector<std::int32_t> part_;    // per vertex
+  std::vector<int> motions_;          // per part
+  std::vector<std::int32_t> joined_;  // per part: the one it belongs to, itself at first
 };
 
 }  // namespace

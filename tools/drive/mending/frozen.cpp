@@ -225,18 +225,21 @@ std::optional<bool> fixes_agree(std::span<const Fix> fixes, double speed_mps) {
 
 using Complex = std::complex<double>;
 
-/// Dead reckoning from the first sample on.
+/// Dead reckoning from the last sample before the first fix on.
 struct Reckoned {
   std::vector<Complex> places;  ///< at the fixes, m
   double length_m = 0;          ///< from the first fix to the last one
 };
 
-/// @param fixes within the time of the samples
+/// @param fixes within the time of the samples, at least one
 Reckoned reckoned(std::span<const OdometrySample> samples, std::span<const Fix> fixes) {
   Reckoned result;
   Complex place = 0;
   double heading = 0;
-  std::size_t i = 0;
+  const auto later =
+      std::upper_bound(samples.begin(), samples.end(), fixes.front().stamp,
+                       [](Stamp stamp, const OdometrySample& sample) { return stamp < sample.stamp; });
+  auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, later - samples.begin() - 1));
   const auto ahead = [&](double dt) {
     return std::polar(samples[i].speed_mps * dt, heading + 0.5 * dt * samples[i].yaw_rate_radps);
   };
