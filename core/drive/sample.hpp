@@ -166,7 +166,8 @@ struct SensorColumn {
   std::string name;  ///< the quantity, and the default name of the column
   std::string unit;  ///< SI unit of its numbers: "m", "m/s", "m/s^2", "s", "rad", "rad/s" or "1"
   /// sense of the numbers. For rad: "" is a size, "ccw" an angle or turn, "ccw_from_east" a heading
-  /// (given from true east, delivered in the frame). For rad/s: "" is a size, "ccw" a turning rate. For m/s: "body" is that of a vehicle.
+  /// (given from true east, delivered in the frame). For rad/s: "" is a size, "ccw" a turning rate. For m/s:
+  /// "body" is that of a vehicle.
   /// For m: "x", "y" and "height" are the coordinates of a place, delivered in the frame (x and y
   /// together). A user may give them as latitude and longitude, as easting and northing, or as ECEF,
   /// by the unit of the column. Otherwise ""

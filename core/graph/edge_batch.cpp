@@ -33,14 +33,19 @@ void EdgeBatchBase::remove(std::span<const char> gone, std::span<const VertexInd
   }
 }
 
+namespace {
+
+std::string numbered(std::string_view tag, std::size_t edge) {
+  return std::string(tag) + " number " + std::to_string(edge + 1);
+}
+
+}  // namespace
+
 std::string EdgeBatchBase::name_in(std::string_view tag, std::size_t edge, std::string_view function) {
-  return std::string(tag) + " number " + std::to_string(edge + 1) + ": " + std::string(function);
+  return numbered(tag, edge) + ": " + std::string(function);
 }
 
 void EdgeBatchBase::throw_edge_error(std::string_view tag, const ValueView& view, EdgeRange range) const {
-  const auto name = [&](std::size_t edge) {
-    return std::string(tag) + " number " + std::to_string(edge + 1);
-  };
   Eigen::VectorXd error;
   std::vector<Eigen::MatrixXd> jacobians;
   for (std::size_t edge = range.first; edge + 1 < range.last; ++edge) {
@@ -48,10 +53,10 @@ void EdgeBatchBase::throw_edge_error(std::string_view tag, const ValueView& view
       linearize_edge(edge, view, error, jacobians);
       (void)evaluate_loss(edge, error.dot(information(edge) * error));
     } catch (...) {
-      throw_plugin_error(name(edge), tag);
+      throw_plugin_error(numbered(tag, edge), tag);
     }
   }
-  throw_plugin_error(range.last > range.first ? name(range.last - 1) : std::string(tag), tag);
+  throw_plugin_error(range.last > range.first ? numbered(tag, range.last - 1) : std::string(tag), tag);
 }
 
 const Loss* EdgeBatchBase::loss(std::size_t edge) const {

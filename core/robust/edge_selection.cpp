@@ -1,7 +1,8 @@
+#include <algorithm>
 #include <limits>
-#include <numeric>
-#include <utility>
 
+#include <waymark/core/base/detail/disjoint_sets.hpp>
+#include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/linear/detail/information_root.hpp>
 #include <waymark/core/robust/edge_selection.hpp>
@@ -107,24 +108,25 @@ std::vector<double> innovations(const Graph& graph, std::span<const EdgePlace> e
 
 namespace {
 
+using detail::at;
+
 /// The parts of a graph that its edges join, and that further edges would join.
 class Parts {
  public:
   explicit Parts(const Graph& graph)
-      : graph_(graph),
-        part_(detail::find_components(graph)),
-        motions_(graph.vertex_count(), 0),
-        joined_(graph.vertex_count()) {
-    std::iota(joined_.begin(), joined_.end(), 0);
+      : fixed_(static_cast<std::int32_t>(graph.vertex_count())),
+        sets_(graph.vertex_count() + 1),
+        motions_(graph.vertex_count() + 1, 0) {
+    const std::vector<std::int32_t> component = detail::find_components(graph);
     const std::vector<char> held = find_gauge(graph, PartlyAnchored::hold_vertex).held;
     const std::vector<char> has_edge = vertices_with_edges(graph);
-    for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    for (VertexIndex v = 0; v < fixed_; ++v) {
+      const std::int32_t part = sets_.join(v, graph.fixed(v) ? fixed_ : component[at(v)]);
       if (graph.fixed(v)) continue;
-      int& motions = motions_[at(part_[at(v)])];
       if (has_edge[at(v)] == 0)
-        motions = graph.vertex_type(v).tangent_size;
+        motions_[at(part)] = graph.vertex_type(v).tangent_size;
       else if (is_wholly_held(held[at(v)]))
-        motions = kOfPoses;
+        motions_[at(part)] = kOfPoses;
     }
   }
 
@@ -132,37 +134,23 @@ class Parts {
   /// @param dimension of the error
   bool join(std::span<const VertexIndex> vertices, int dimension) {
     if (vertices.size() != 2) return false;
-    std::int32_t moved = part_of(vertices[0]);
-    std::int32_t stays = part_of(vertices[1]);
-    if (moved == stays) return false;
-    if (motions_of(moved) == 0 || (motions_of(stays) > 0 && motions_of(stays) < motions_of(moved)))
-      std::swap(moved, stays);
-    if (motions_of(moved) == 0 || dimension < motions_of(moved)) return false;
-    joined_[moved] = stays;
+    const std::int32_t one = sets_.of(vertices[0]);
+    const std::int32_t other = sets_.of(vertices[1]);
+    if (one == other) return false;
+    // The one that is moved loses its motions. 0: nothing moves it.
+    const auto [fewer, more] = std::minmax(motions_[at(one)], motions_[at(other)]);
+    const int of_moved = fewer == 0 ? more : fewer;
+    if (of_moved == 0 || dimension < of_moved) return false;
+    motions_[at(sets_.join(one, other))] = fewer == 0 ? 0 : more;
     return true;
   }
 
  private:
   static constexpr int kOfPoses = 3;
-  static constexpr std::int32_t kFixed = -1;  // all fixed vertices
 
-  static std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
-  [[nodiscard]] std::int32_t part_of(VertexIndex v) {
-    std::int32_t part = graph_.fixed(v) ? kFixed : part_[at(v)];
-    while (part != kFixed && joined_[at(part)] != part) {
-      std::int32_t& next = joined_[at(part)];
-      if (next != kFixed) next = joined_[at(next)];  // chains stay short
-      part = next;
-    }
-    return part;
-  }
-  /// Returns how many motions of a part nothing stops; 0: it is anchored.
-  [[nodiscard]] int motions_of(std::int32_t part) const { return part == kFixed ? 0 : motions_[at(part)]; }
-
-  const Graph& graph_;
-  std::vector<std::int32_t> part_;    // per vertex
-  std::vector<int> motions_;          // per part
-  std::vector<std::int32_t> joined_;  // per part: the one it belongs to, itself at first
+  std::int32_t fixed_;  // stands for all fixed vertices
+  detail::DisjointSets sets_;
+  std::vector<int> motions_;  // of each part, by its name: how many rigid ones nothing stops
 };
 
 }  // namespace

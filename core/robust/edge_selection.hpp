@@ -39,8 +39,8 @@ enum class Membership {
 [[nodiscard]] std::vector<double> innovations(const Graph& graph, std::span<const EdgePlace> edges,
                                               Membership membership, const Graph& kept, LinearSolver& solver);
 
-/// Returns edges that would join parts of `kept` which nothing joins and of which nothing anchors one: its rigid motions
-/// then make the error zero, so that nothing contradicts such an edge. innovations() holds each part where it is and
+/// Returns edges that would join parts of `kept` which nothing joins and of which nothing anchors one: its rigid
+/// motions then make the error zero, so that nothing contradicts such an edge. innovations() holds each part where it is and
 /// cannot tell. Of several edges between the same parts the first one is returned; the others may contradict it.
 /// @param edges of `graph`, none of them in `kept`, those that are preferred first
 [[nodiscard]] std::vector<EdgePlace> joining_edges(const Graph& graph, std::span<const EdgePlace> edges,

@@ -26,7 +26,6 @@ set(WAYMARK_PUBLIC_HEADERS
   core/graph/checks/relative_check.hpp
   core/graph/checks/vertex_type_check.hpp
   core/graph/dual.hpp
-  core/system/foreign_poses.hpp
   core/graph/edge.hpp
   core/graph/edge_batch.hpp
   core/graph/fields.hpp
@@ -55,6 +54,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/robust/edge_selection.hpp
   core/robust/graduation.hpp
   core/robust/trust.hpp
+  core/system/foreign_poses.hpp
   core/system/gauge.hpp
   core/system/normal_equations.hpp
   core/system/structure.hpp

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include <waymark/core/base/detail/disjoint_sets.hpp>
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/system/foreign_poses.hpp>
 #include <waymark/core/system/structure.hpp>
@@ -24,31 +25,12 @@ Complex complex(const Eigen::Vector2d& v) {
   return {v[0], v[1]};
 }
 
-/// Sets of vertices joined by relations; the name of a set is its first vertex.
-class Parts {
- public:
-  explicit Parts(std::size_t vertices) : parent_(vertices) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-  [[nodiscard]] VertexIndex of(VertexIndex v) {
-    while (parent_[at(v)] != v) v = parent_[at(v)] = parent_[at(parent_[at(v)])];
-    return v;
-  }
-  void join(VertexIndex a, VertexIndex b) {
-    const VertexIndex ra = of(a);
-    const VertexIndex rb = of(b);
-    parent_[at(std::max(ra, rb))] = std::min(ra, rb);
-  }
-
- private:
-  std::vector<VertexIndex> parent_;
-};
-
 /// One aspect of the graph, headings or positions: the free vertices that its relations join, and
 /// the anchors they are joined to.
 struct Aspect {
   explicit Aspect(std::size_t vertices) : parts(vertices), related(vertices, 0), anchored(vertices, 0) {}
-  Parts parts;
-  std::vector<char> related;  ///< per vertex: some relation contains it
+  detail::DisjointSets parts;  ///< of vertices that relations join
+  std::vector<char> related;   ///< per vertex: some relation contains it
   /// per first vertex of a part: a relation ties the part to a known value
   std::vector<char> anchored;
 };

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 
+#include <waymark/core/base/detail/disjoint_sets.hpp>
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/system/detail/components.hpp>
 #include <waymark/core/system/detail/incidence.hpp>
@@ -11,29 +12,19 @@ namespace waymark::detail {
 
 // Union-find with path halving. The root is the first vertex of each component.
 std::vector<std::int32_t> find_components(const Graph& graph) {
-  std::vector<std::int32_t> parent(graph.vertex_count());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::int32_t v) {
-    while (parent[at(v)] != v) v = parent[at(v)] = parent[at(parent[at(v)])];
-    return v;
-  };
+  DisjointSets sets(graph.vertex_count());
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
     for_each_edge(graph.batch(b), [&](std::span<const VertexIndex> vertices) {
-      std::int32_t joined = -1;
+      VertexIndex joined = -1;
       for (const VertexIndex v : vertices) {
         if (graph.fixed(v)) continue;
-        const std::int32_t r = root(v);
-        if (joined >= 0 && r != joined) {
-          parent[at(std::max(r, joined))] = std::min(r, joined);
-          joined = std::min(r, joined);
-        } else {
-          joined = r;
-        }
+        joined = joined < 0 ? v : sets.join(joined, v);
       }
     });
   }
-  for (std::size_t v = 0; v < parent.size(); ++v) parent[v] = root(static_cast<std::int32_t>(v));
-  return parent;
+  std::vector<std::int32_t> first(graph.vertex_count());
+  for (std::size_t v = 0; v < first.size(); ++v) first[v] = sets.of(static_cast<VertexIndex>(v));
+  return first;
 }
 
 Eigen::MatrixXd motion_of(const Graph& graph, VertexIndex v, const RigidMotionView::Place& place) {

@@ -27,6 +27,11 @@ double cost_at(const Unknowns& at, TrialDrive& trial) {
   });
 }
 
+struct Minimum {
+  Unknowns at = Unknowns::Zero();
+  double cost = 0;
+};
+
 struct PlaceSearch {
   TrialDrive& trial;
   std::exception_ptr thrown{};  // it must not fly through code in C
@@ -44,14 +49,14 @@ double cost_of_place(unsigned, const double* at, double*, void* data) {
   }
 }
 
-/// Finds the least cost without derivatives (BOBYQA, Powell 2009): far from it the errors of precise fixes cost the same
-/// wherever the antenna is.
-Unknowns least_of(const Unknowns& bounds, TrialDrive& trial) {
+/// Finds the least cost without derivatives (BOBYQA, Powell 2009): far from it the errors of precise fixes cost the
+/// same wherever the antenna is.
+Minimum least_of(const Unknowns& bounds, TrialDrive& trial) {
   constexpr int kMostEvaluations = 60;
   const Unknowns low = -bounds;
   const Unknowns first(0.5, 0.5, 0.05);
   const Unknowns near(0.01, 0.01, 0.001);
-  Unknowns at = Unknowns::Zero();
+  Minimum least;
   PlaceSearch search{trial};
   nlopt_opt bobyqa = nlopt_create(NLOPT_LN_BOBYQA, 3);
   nlopt_set_min_objective(bobyqa, cost_of_place, &search);
@@ -60,16 +65,15 @@ Unknowns least_of(const Unknowns& bounds, TrialDrive& trial) {
   nlopt_set_initial_step(bobyqa, first.data());
   nlopt_set_xtol_abs(bobyqa, near.data());
   nlopt_set_maxeval(bobyqa, kMostEvaluations);
-  double least = 0;
-  nlopt_optimize(bobyqa, at.data(), &least);  // its best values stand whatever ends it
+  nlopt_optimize(bobyqa, least.at.data(), &least.cost);  // its best values stand whatever ends it
   nlopt_destroy(bobyqa);
   if (search.thrown) std::rethrow_exception(search.thrown);
-  return at;
+  return least;
 }
 
 /// Returns the second derivatives of the cost by central differences.
-Eigen::Matrix3d curvature_at(const Unknowns& at, const Unknowns& steps, TrialDrive& trial) {
-  const double here = cost_at(at, trial);
+Eigen::Matrix3d curvature_at(const Minimum& minimum, const Unknowns& steps, TrialDrive& trial) {
+  const auto& [at, here] = minimum;
   Eigen::Matrix3d curvature;
   Eigen::Vector3d after;
   for (int i = 0; i < 3; ++i) {
@@ -123,15 +127,15 @@ std::optional<AntennaPlace> find_antenna_place(const PlacedDrive& placed,
                    settings, registry, between);
   const double unmoved = cost_at(Unknowns::Zero(), trial);
   const Unknowns bounds(kFarthest_m, kFarthest_m, kLatest_s);
-  const Unknowns best = least_of(bounds, trial);
-  const bool is_inside = (best.cwiseAbs().array() < 0.9 * bounds.array()).all();
-  const double least = cost_at(best, trial);
-  const double spread = trial.spread(least);
-  const double size_m = best.head<2>().norm();
-  if (!(unmoved - least > kGain * spread * spread) || !(size_m > kLeast_m) || !is_inside) return std::nullopt;
+  const Minimum least = least_of(bounds, trial);
+  const bool is_inside = (least.at.cwiseAbs().array() < 0.9 * bounds.array()).all();
+  const double spread = trial.spread(least.cost);
+  const double size_m = least.at.head<2>().norm();
+  if (!(unmoved - least.cost > kGain * spread * spread) || !(size_m > kLeast_m) || !is_inside)
+    return std::nullopt;
   const Eigen::Matrix3d covariance =
-      spread * spread * curvature_at(best, steps_of(trial.drive()), trial).inverse();
-  const AntennaPlace antenna{best.head<2>(), covariance.diagonal().head<2>().cwiseSqrt()};
+      spread * spread * curvature_at(least, steps_of(trial.drive()), trial).inverse();
+  const AntennaPlace antenna{least.at.head<2>(), covariance.diagonal().head<2>().cwiseSqrt()};
   const Eigen::Vector2d direction = antenna.place_m / size_m;
   const double sigma_m = std::sqrt(direction.dot(covariance.topLeftCorner<2, 2>() * direction));
   if (!antenna.sigma_m.allFinite() || !(size_m > kSigmas * sigma_m)) return std::nullopt;

@@ -77,8 +77,7 @@ std::vector<std::string> adapt_to_scales(const PlacedDrive& placed, bool by_defa
     if (may_calibrate) calibrate(kYawScale, placed, registry, decision);
     widen(of_scale(kYawScale, *placed.turn_factor, "turns"));
   }
-  constexpr double kUsual_radpm = 1e-3;  // of two wheels 1.5 m apart, one is larger by 1.5 thousandths
-  if (placed.yaw_bias && std::abs(placed.yaw_bias->radpm) > kUsual_radpm) {
+  if (placed.yaw_bias && placed.yaw_bias->radpm != 0) {
     if (may_calibrate) calibrate(kYawPerSpeed, placed, registry, decision);
     widen({kYawPerSpeed, std::abs(placed.yaw_bias->radpm), "turns per metre"});
   }

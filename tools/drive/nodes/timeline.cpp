@@ -217,7 +217,7 @@ std::vector<Eigen::Vector3d> reckoned_antenna(const Timeline& timeline, std::spa
 bool YawBias::is_large() const {
   constexpr double kSigmas = 5;
   constexpr double kOfTime_radps = 0.01;
-  constexpr double kOfWay_radpm = 0.001;
+  constexpr double kOfWay_radpm = 0.001;  // of two wheels 1.5 m apart, one is larger by 1.5 thousandths
   return sigmas > kSigmas && (std::abs(radps) > kOfTime_radps || std::abs(radpm) > kOfWay_radpm);
 }
 

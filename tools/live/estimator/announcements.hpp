@@ -51,11 +51,11 @@ class Announcements {
   void forget_settled() { settled_.reset(); }
 
  private:
-  State state_ = State::waiting;
-  std::vector<Report> reports_;
   void tell_powers(Stamp now, const std::string& kind, const std::string& source, const std::string& text,
                    std::size_t count);
 
+  State state_ = State::waiting;
+  std::vector<Report> reports_;
   std::set<std::string> told_;                 // without their numbers
   std::map<std::string, std::size_t> failed_;  // by text
   std::optional<Stamp> settled_;               // the last pose that left a window

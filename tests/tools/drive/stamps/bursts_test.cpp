@@ -9,10 +9,13 @@
 #include <waymark/tools/drive/stamps/bursts.hpp>
 #include <waymark/tools/drive/stamps/settle_stamps.hpp>
 
+#include "settled.hpp"
+
 namespace bursts_test {
 
 using namespace waymark;
 using namespace waymark::drive;
+using waymark_test::settled;
 
 namespace {
 
@@ -30,12 +33,6 @@ std::vector<OdometrySample> logged(const std::function<double(double)>& clock, i
     samples.push_back({Stamp::from_seconds(clock(t)), speed_at(t) + noise(random), 0.1 * std::sin(0.5 * t)});
   }
   return samples;
-}
-
-PrepareReport settled(std::vector<OdometrySample>& samples) {
-  PrepareReport report;
-  settle_stamps(samples, 0, "odo.csv", report);
-  return report;
 }
 
 }  // namespace

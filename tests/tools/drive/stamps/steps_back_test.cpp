@@ -9,10 +9,13 @@
 #include <waymark/tools/drive/stamps/settle_stamps.hpp>
 #include <waymark/tools/drive/stamps/steps_back.hpp>
 
+#include "settled.hpp"
+
 namespace steps_back_test {
 
 using namespace waymark;
 using namespace waymark::drive;
+using waymark_test::settled;
 
 namespace {
 
@@ -32,12 +35,6 @@ std::vector<OdometrySample> logged(const std::function<double(double)>& clock) {
 
 double true_time(double t) {
   return t;
-}
-
-PrepareReport settled(std::vector<OdometrySample>& samples) {
-  PrepareReport report;
-  settle_stamps(samples, 0, "odo.csv", report);
-  return report;
 }
 
 }  // namespace
