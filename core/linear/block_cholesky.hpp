@@ -50,6 +50,7 @@ class BlockCholesky final : public LinearSolver {
  private:
   class Stream;
   class DiagonalInverse;
+  friend class InverseForm;
 
   /// Makes a pass over all subtrees in parallel, and then over the nodes above them. Returns false
   /// if a pivot failed.

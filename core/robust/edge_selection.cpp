@@ -5,6 +5,7 @@
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/linear/detail/information_root.hpp>
+#include <waymark/core/linear/inverse_form.hpp>
 #include <waymark/core/robust/edge_selection.hpp>
 #include <waymark/core/system/detail/components.hpp>
 #include <waymark/core/system/detail/incidence.hpp>
@@ -49,50 +50,36 @@ Graph without_edges(const Graph& graph, std::span<const EdgePlace> edges) {
   return result;
 }
 
-std::vector<double> innovations(const Graph& graph, std::span<const EdgePlace> edges, Membership membership,
-                                const Graph& kept, LinearSolver& solver) {
-  std::vector<double> result(edges.size(), std::numeric_limits<double>::infinity());
+std::vector<Innovation> innovations(const Graph& graph, std::span<const EdgePlace> edges,
+                                    Membership membership, const Graph& kept) {
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  std::vector<Innovation> result(edges.size(), {kUnknown, kUnknown});
   if (edges.empty()) return result;
   Structure structure;
   structure.build(kept, find_gauge(kept).held);
   NormalEquations equations(kept, structure);
   (void)equations.linearize(kept.values());
-  const BlockPattern& pattern = structure.pattern();
-  const auto unknowns = static_cast<Eigen::Index>(pattern.dimension());
-  if (unknowns > 0) {
-    solver.analyze(pattern);
-    if (solver.factorize(equations.hessian()) != FactorStatus::ok) return result;
-  }
+  BlockCholesky cholesky;
+  cholesky.analyze(structure.pattern());
+  if (cholesky.factorize(equations.hessian()) != FactorStatus::ok) return result;
+  InverseForm form(cholesky);
   Eigen::VectorXd e;
   std::vector<Eigen::MatrixXd> jacobians;
-  Eigen::VectorXd row(unknowns);
-  Eigen::VectorXd solved(unknowns);
+  std::vector<BlockRow> rows;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const EdgeBatchBase& batch = graph.batch(edges[i].batch);
     const std::span<const VertexIndex> vertices = batch.vertices(edges[i].edge);
     batch.linearize_edge(edges[i].edge, kept.view(), e, jacobians);
-    // J P J^T, one row of J at a time.
-    Eigen::MatrixXd predicted = Eigen::MatrixXd::Zero(e.size(), e.size());
-    for (Eigen::Index r = 0; r < e.size() && unknowns > 0; ++r) {
-      row.setZero();
-      for (std::size_t k = 0; k < vertices.size(); ++k) {
-        const int column = structure.column_of(vertices[k]);
-        if (column < 0) continue;
-        row.segment(pattern.start[static_cast<std::size_t>(column)], jacobians[k].cols()) =
-            jacobians[k].row(r).transpose();
-      }
-      solver.solve({row.data(), static_cast<std::size_t>(unknowns)},
-                   {solved.data(), static_cast<std::size_t>(unknowns)});
-      for (std::size_t k = 0; k < vertices.size(); ++k) {
-        const int column = structure.column_of(vertices[k]);
-        if (column < 0) continue;
-        predicted.col(r) += jacobians[k] * solved.segment(pattern.start[static_cast<std::size_t>(column)],
-                                                          jacobians[k].cols());
-      }
+    rows.clear();
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+      const int column = structure.column_of(vertices[k]);
+      if (column >= 0) rows.push_back({column, jacobians[k].transpose()});
     }
+    const Eigen::MatrixXd predicted =
+        rows.empty() ? Eigen::MatrixXd::Zero(e.size(), e.size()) : form(rows);  // J P J^T
     // With Omega = A^T A: (Omega^-1 + C)^-1 = A^T (I + A C A^T)^-1 A also holds if Omega is singular.
     const Eigen::MatrixXd root = information_root(batch.information(edges[i].edge));
-    result[i] = 0;
+    result[i] = {0, 0};
     if (root.rows() == 0) continue;
     const double sign = membership == Membership::outside ? 1 : -1;
     const auto [spread, directions] = symmetric_eigen(Eigen::MatrixXd::Identity(root.rows(), root.rows()) +
@@ -101,7 +88,8 @@ std::vector<double> innovations(const Graph& graph, std::span<const EdgePlace> e
     // would decide.
     const bool checked = membership == Membership::outside || spread[0] > 1e-9 * spread[root.rows() - 1];
     const Eigen::VectorXd along = directions.transpose() * (root * e);
-    if (checked) result[i] = along.cwiseAbs2().cwiseQuotient(spread).sum();
+    if (checked) result[i].squared = along.cwiseAbs2().cwiseQuotient(spread).sum();
+    result[i].looseness = 0.5 * spread.array().max(std::numeric_limits<double>::min()).log().sum();
   }
   return result;
 }

@@ -10,7 +10,6 @@
 
 #include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
-#include <waymark/core/linear/linear_solver.hpp>
 
 namespace WAYMARK_EXPORT waymark {
 
@@ -26,6 +25,14 @@ enum class Membership {
   inside    ///< it belongs to them, and is compared with the others only
 };
 
+/// How an edge agrees with other edges. All is infinite if these determine nothing.
+struct Innovation {
+  double squared;  ///< e^T S^-1 e
+  /// half the logarithm of det S / det Omega^-1: how much less surely the other edges predict what the edge measures
+  /// than it measures it. An edge outside that they hardly predict agrees with them by chance.
+  double looseness;
+};
+
 /// Compares edges of `graph` with the edges of `kept` (a graph of the same vertices at a minimum).
 /// It returns e^T S^-1 e, with S = Omega^-1 + J P J^T for an edge outside and S = Omega^-1 - J P
 /// J^T for an edge inside. P is the covariance of the unknowns. The result is chi-square
@@ -34,10 +41,10 @@ enum class Membership {
 /// an edge inside that no other edge checks, and infinite for all edges if the normal equations are
 /// not positive definite.
 ///
-/// Vertices that are held, fixed, or joined by no edge of `kept` count as known. The cost is one
-/// solve per edge and dimension of its error.
-[[nodiscard]] std::vector<double> innovations(const Graph& graph, std::span<const EdgePlace> edges,
-                                              Membership membership, const Graph& kept, LinearSolver& solver);
+/// Vertices that are held, fixed, or joined by no edge of `kept` count as known. The cost is one factorisation, and per
+/// edge the part of a solve that inverse_form.hpp tells.
+[[nodiscard]] std::vector<Innovation> innovations(const Graph& graph, std::span<const EdgePlace> edges,
+                                                  Membership membership, const Graph& kept);
 
 /// Returns edges that would join parts of `kept` which nothing joins and of which nothing anchors one: its rigid
 /// motions then make the error zero, so that nothing contradicts such an edge. innovations() holds each part where it is and

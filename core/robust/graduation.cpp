@@ -4,11 +4,15 @@
 #include <iterator>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/linear/block_symbolic.hpp>
 #include <waymark/core/robust/chi_square.hpp>
 #include <waymark/core/robust/graduation.hpp>
+#include <waymark/core/system/gauge.hpp>
+#include <waymark/core/system/structure.hpp>
 
 namespace waymark {
 namespace {
@@ -23,7 +27,7 @@ constexpr int kFirstIterations = 50;
 constexpr int kMaxDoubts = 10;
 /// If more than this share of the candidates are outliers, they may be right, and a trusted edge wrong.
 constexpr double kManyOutliers = 0.2;
-constexpr std::size_t kFewOutliers = 3;  // so few say nothing about the others
+constexpr double kFewOutliers = 3;  // so few say nothing about the others
 /// Steps towards the minimum with the loss before a verdict.
 constexpr int kConverge = 30;
 
@@ -36,6 +40,19 @@ LossValue no_loss(double squared, double) {
 bool convex_at(const Loss& loss, double squared) {
   const LossValue value = loss.at(squared);
   return value.weight > 0 && value.weight + 2 * squared * value.curvature >= -1e-9 * value.weight;
+}
+
+/// Returns how many operations a factorisation of the normal equations takes.
+double factorization_operations(const Graph& graph) {
+  Structure structure;
+  structure.build(graph, find_gauge(graph).held);
+  double sum = 0;
+  for (const Supernode& node : analyze_blocks(structure.pattern()).nodes) {
+    if (node.links > 0) continue;  // linear
+    const double height = node.columns + node.below;
+    sum += node.columns * height * height;
+  }
+  return sum;
 }
 
 /// A split of the edges, and its minimum.
@@ -59,10 +76,15 @@ class Graduation {
   void move_to_candidates(const std::vector<EdgePlace>& edges);
   void search();
   void search_from_trusted(bool first_of_parallels);
+  template <typename Search>
+  void apart(Search search);
+  std::vector<EdgePlace> grown_from(std::vector<EdgePlace> out);
   std::vector<EdgePlace> contradicted(std::span<const EdgePlace> trusted) const;
   std::vector<EdgePlace> kept_and_trusted() const;
   bool doubt_trusted();
+  bool is_dense() const;
   bool is_implausible() const;
+  bool has_many_outliers() const;
   double bound(EdgePlace place) const;
   double price(EdgePlace place) const;
   std::vector<EdgePlace> beyond_bound() const;
@@ -92,6 +114,7 @@ class Graduation {
   std::vector<std::vector<EdgePlace>> parallels_;  // groups of candidates that would be trusted alone
   std::vector<std::vector<EdgePlace>> judged_;     // splits whose minimum is known
   Verdict best_;
+  bool dense_ = false;  // together all edges fill the factor, so that they are never used together
   bool interrupted_ = false;
   GraduationResult result_;
 };
@@ -170,18 +193,89 @@ void Graduation::attach_losses() {
 
 // Narrows the loss from the present values of the graph. The cheapest split on the way counts.
 void Graduation::search() {
-  working_ = graph_;
-  narrow();
+  if (!dense_) {
+    working_ = graph_;
+    narrow();
+  }
   cross_examine();
 }
 
-// Searches from the minimum of the trusted edges, joined by one edge of each group of parallel ones.
+// Grows a split from the trusted edges, joined by one edge of each group of parallel ones. If that is not the end, searches
+// from the minimum of these edges.
 void Graduation::search_from_trusted(bool first_of_parallels) {
   std::vector<EdgePlace> out = candidates_;
   for (const std::vector<EdgePlace>& group : parallels_)
     std::erase(out, first_of_parallels ? group.front() : group.back());
-  judge(std::move(out));
+  apart([&] {
+    judge(grown_from(out));
+    cross_examine();
+  });
+  if (dense_ || (!is_implausible() && !has_many_outliers())) return;
+  apart([&] {
+    judge(std::move(out));
+    search();
+  });
+}
+
+// Improves the best split of this search, even if another search has found a cheaper one that may be improved no more.
+template <typename Search>
+void Graduation::apart(Search search) {
+  Verdict others = std::exchange(best_, {});
   search();
+  if (others.cost <= best_.cost) best_ = std::move(others);
+}
+
+// False closures join places anywhere, and fill the factor of a large graph as right ones do not.
+bool Graduation::is_dense() const {
+  constexpr double kManyOperations = 2e10;  // seconds
+  constexpr double kTimesOfTrusted = 100;
+  const double all = factorization_operations(graph_);
+  if (all < kManyOperations) return false;
+  const Graph trusted = without_edges(graph_, candidates_);
+  return joining_edges(graph_, candidates_, trusted).empty() &&
+         all > kTimesOfTrusted * factorization_operations(trusted);
+}
+
+bool Graduation::has_many_outliers() const {
+  const double many = kManyOutliers * static_cast<double>(candidates_.size());
+  return static_cast<double>(best_.outliers.size()) > std::max(kFewOutliers, many);
+}
+
+// Returns the outliers that remain if those that agree with the rest return, a share of them at a time. Those that the
+// rest predicts most surely come first: others may agree by chance, and once their betters are in, they do not.
+std::vector<EdgePlace> Graduation::grown_from(std::vector<EdgePlace> out) {
+  constexpr int kMaxSplits = 1000;
+  constexpr std::size_t kShare = 10;
+  constexpr double kTogether = 2;  // of the looseness, between the first and the last that return at a time
+  std::vector<EdgePlace> refused;  // had returned, and were contradicted by others
+  for (int split = 0; split < kMaxSplits && !interrupted_; ++split) {
+    const Verdict verdict = optimize_without(out);
+    const Graph kept = without_edges(graph_, verdict.outliers);
+    if (split == 0 && !joining(verdict, kept).empty()) break;  // the innovations would take parts for known
+    const std::vector<Innovation> innovation =
+        innovations(graph_, verdict.outliers, Membership::outside, kept);
+    std::vector<std::pair<double, EdgePlace>> agreeing;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (innovation[i].squared <= bound(out[i]) &&
+          !std::binary_search(refused.begin(), refused.end(), out[i]))
+        agreeing.emplace_back(innovation[i].looseness, out[i]);
+    }
+    if (agreeing.empty()) break;
+    std::sort(agreeing.begin(), agreeing.end());
+    agreeing.resize((agreeing.size() + kShare - 1) / kShare);
+    std::erase_if(agreeing, [limit = agreeing.front().first + kTogether](const auto& edge) {
+      return edge.first > limit;
+    });
+    for (const auto& [looseness, place] : agreeing) std::erase(out, place);
+    for (const EdgePlace place : inside(verdict)) {
+      if (squared_error(graph_, place) <= bound(place)) continue;
+      out.push_back(place);
+      refused.push_back(place);
+    }
+    std::sort(out.begin(), out.end());
+    std::sort(refused.begin(), refused.end());
+  }
+  return out;
 }
 
 void Graduation::narrow() {
@@ -237,8 +331,7 @@ std::vector<EdgePlace> Graduation::joining(const Verdict& verdict, const Graph& 
 // other ones would raise the minimum by more than they cost outside.
 std::vector<EdgePlace> Graduation::still_out(const Verdict& verdict, std::vector<EdgePlace>& returned) {
   const Graph kept = without_edges(graph_, verdict.outliers);
-  const std::vector<double> innovation =
-      innovations(graph_, verdict.outliers, Membership::outside, kept, solver_);
+  const std::vector<Innovation> innovation = innovations(graph_, verdict.outliers, Membership::outside, kept);
   const std::vector<EdgePlace> joins = joining(verdict, kept);
   std::vector<EdgePlace> out;
   for (std::size_t i = 0; i < verdict.outliers.size(); ++i) {
@@ -246,7 +339,7 @@ std::vector<EdgePlace> Graduation::still_out(const Verdict& verdict, std::vector
     const auto known = std::lower_bound(returned.begin(), returned.end(), place);
     const bool was_back = known != returned.end() && *known == place;
     const bool comes_in =
-        innovation[i] <= price(place) || std::binary_search(joins.begin(), joins.end(), place);
+        innovation[i].squared <= price(place) || std::binary_search(joins.begin(), joins.end(), place);
     if (was_back || !comes_in) {
       out.push_back(place);
     } else {
@@ -265,11 +358,12 @@ std::vector<EdgePlace> Graduation::still_out(const Verdict& verdict, std::vector
 // to the worst are returned.
 std::vector<EdgePlace> Graduation::most_accused(std::span<const EdgePlace> members, const Verdict& verdict) {
   const Graph kept = without_edges(graph_, verdict.outliers);
-  const std::vector<double> against = innovations(graph_, members, Membership::inside, kept, solver_);
-  const double worst = against.empty() ? 0 : *std::max_element(against.begin(), against.end());
+  const std::vector<Innovation> against = innovations(graph_, members, Membership::inside, kept);
+  double worst = 0;
+  for (const Innovation& innovation : against) worst = std::max(worst, innovation.squared);
   std::vector<EdgePlace> result;
   for (std::size_t i = 0; i < members.size(); ++i) {
-    if (against[i] > std::max(bound(members[i]), 0.5 * worst)) result.push_back(members[i]);
+    if (against[i].squared > std::max(bound(members[i]), 0.5 * worst)) result.push_back(members[i]);
   }
   return result;
 }
@@ -297,7 +391,7 @@ void Graduation::judge(std::vector<EdgePlace> outliers) {
 // split, because it takes a solve per candidate and dimension.
 void Graduation::cross_examine() {
   constexpr int kMaxRounds = 20;
-  for (int round = 0; round < kMaxRounds && !interrupted_; ++round) {
+  for (int round = 0; round < kMaxRounds && !interrupted_ && !best_.values.empty(); ++round) {
     graph_.set_values(best_.values);
     std::vector<EdgePlace> outliers = most_accused(inside(best_), best_);
     if (outliers.empty()) return;
@@ -362,33 +456,37 @@ GraduationResult Graduation::run() {
   const auto start = std::chrono::steady_clock::now();
   options_.check();
   find_candidates();
+  dense_ = is_dense();
   // 1. Use all edges. If none is beyond its bound, there are no outliers. With outliers this
   //    minimum may be far away; the next step need not start exactly from it.
-  OptimizerOptions first = options_.optimizer;
-  first.max_iterations = std::min(kFirstIterations, first.max_iterations);
-  (void)count(optimize(graph_, algorithm_, solver_, first));
+  if (!dense_) {
+    OptimizerOptions first = options_.optimizer;
+    first.max_iterations = std::min(kFirstIterations, first.max_iterations);
+    (void)count(optimize(graph_, algorithm_, solver_, first));
+  }
   const std::vector<double> of_all_edges = graph_.values();
-  const bool suspicious = !beyond_bound().empty() || !contradicted(trusted_).empty();
+  const bool suspicious = dense_ || !beyond_bound().empty() || !contradicted(trusted_).empty();
   // 2. Narrow the loss from there, and if that does not end well, from the minimum of what is trusted.
-  if (!interrupted_ && suspicious) search();
-  if (best_.values.empty()) best_ = optimize_without({});
-  if (!interrupted_ && suspicious && is_implausible()) {
+  if (!interrupted_ && suspicious && !dense_) {
+    search();
+    if (best_.values.empty()) best_ = optimize_without({});
+  }
+  if (!interrupted_ && suspicious && (dense_ || is_implausible() || has_many_outliers())) {
     search_from_trusted(true);
     if (!parallels_.empty()) search_from_trusted(false);
   }
   // 3. Doubt what was trusted: single edges, and all of them if they cost many of the others.
   for (int round = 0; round < kMaxDoubts && suspicious && options_.doubts_trusted && doubt_trusted(); ++round)
     search();
-  const auto many = std::max(
-      kFewOutliers, static_cast<std::size_t>(kManyOutliers * static_cast<double>(candidates_.size())));
-  if (!interrupted_ && options_.doubts_trusted && suspicious && best_.outliers.size() > many) {
+  if (best_.values.empty()) best_ = optimize_without({});
+  if (!interrupted_ && options_.doubts_trusted && suspicious && !dense_ && has_many_outliers()) {
     graph_.set_values(of_all_edges);
     std::vector<EdgePlace> all = trusted_;
     std::erase_if(all, [&](EdgePlace place) {
       return graph_.edge_type(place.batch).arity == EdgeType::kRuntimeArity;  // many edges in one
     });
     move_to_candidates(all);
-    search();
+    apart([&] { search(); });
   }
   graph_.set_values(best_.values);
   for (const EdgePlace place : candidates_) {

@@ -10,6 +10,7 @@
 #include <waymark/core/base/detail/thread_pool.hpp>
 #include <waymark/core/linear/block_cholesky.hpp>
 #include <waymark/core/linear/block_symbolic.hpp>
+#include <waymark/core/linear/inverse_form.hpp>
 #include <waymark/core/system/gauge.hpp>
 
 #include "support/block_shapes.hpp"
@@ -108,6 +109,33 @@ TEST_CASE("block Cholesky: every kind of pattern, every set of kernels: the dens
       CHECK(difference(x, expected) <= 1e-12);
       CHECK(same_bits(solve_in_place(solver, b), x));
       CHECK(solver.factor_size() >= static_cast<std::int64_t>(matrix.rows()));
+    }
+  }
+}
+
+TEST_CASE("inverse form: every kind of pattern, any few block rows: the dense form") {
+  std::mt19937_64 random(3);
+  for (const Shape& shape : all_shapes()) {
+    INFO(shape.name << ", " << shape.sizes.size() << " blocks");
+    const BlockPattern pattern = shape.pattern();
+    if (pattern.columns() == 0) continue;
+    const Eigen::MatrixXd matrix = random_spd(pattern, 3, 1);
+    BlockCholesky solver;
+    solver.analyze(pattern);
+    REQUIRE(solver.factorize(gather(pattern, matrix)) == FactorStatus::ok);
+    InverseForm form(solver);
+    for (const int count : {1, 2, 5}) {
+      std::vector<BlockRow> rows;
+      Eigen::MatrixXd all = Eigen::MatrixXd::Zero(matrix.rows(), count);
+      for (int i = 0; i < count; ++i) {  // a block may come twice
+        const int column = static_cast<int>(random() % static_cast<std::uint64_t>(pattern.columns()));
+        const int size = pattern.size[static_cast<std::size_t>(column)];
+        rows.push_back({column, Eigen::MatrixXd::Random(size, count)});
+        all.middleRows(static_cast<Eigen::Index>(pattern.start[static_cast<std::size_t>(column)]), size) +=
+            rows.back().values;
+      }
+      const Eigen::MatrixXd expected = all.transpose() * matrix.llt().solve(all);
+      CHECK((form(rows) - expected).norm() <= 1e-11 * expected.norm());
     }
   }
 }

@@ -1,5 +1,6 @@
 // Graduated non-convexity: false edges are found, good ones stay, and the result is the optimum
 // without them.
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -85,9 +86,37 @@ Spoiled spoiled_walk(int count, bool grouped, std::uint64_t seed) {
 }
 
 /// Adds false edges.
-void spoil(Spoiled& spoiled, VertexIndex from, VertexIndex to, const Eigen::Vector3d& z) {
+void spoil(Spoiled& spoiled, VertexIndex from, VertexIndex to, const Eigen::Vector3d& z,
+           const Eigen::Matrix3d& information = pose_information(0.02, 0.005)) {
   spoiled.false_edges.push_back({0, spoiled.graph.batch(0).size()});
-  spoiled.graph.add_edge(EdgeSe2{z}, {from, to}, pose_information(0.02, 0.005));
+  spoiled.graph.add_edge(EdgeSe2{z}, {from, to}, information);
+}
+
+/// A walk that begins at its dead reckoning, with groups of five false closures that agree among themselves.
+Spoiled reckoned_walk(int groups, std::uint64_t seed) {
+  constexpr int kPoses = 1000;
+  Spoiled spoiled;
+  Graph& graph = spoiled.without = grid_walk(kPoses, 100, seed, 0.05, 0.03);
+  std::vector<double> fields;
+  for (std::size_t e = 0; e < graph.batch(0).size(); ++e) {
+    const auto vertices = graph.batch(0).vertices(e);
+    if (vertices[1] != vertices[0] + 1) continue;
+    fields.clear();
+    graph.batch(0).fields(e, fields);
+    const auto from = graph.value(vertices[0]);
+    const Pose2<double> to = compose(constant_pose<double>(Eigen::Vector3d(from.data())),
+                                     constant_pose<double>(Eigen::Vector3d(fields.data())));
+    graph.set_value(vertices[1], std::array{to.position[0], to.position[1], wrap_angle(to.heading)});
+  }
+  spoiled.graph = graph;
+  std::mt19937_64 random(seed + 100);
+  for (int k = 0; k < groups; ++k) {
+    const int from = static_cast<int>(random() % (kPoses / 2));
+    const int to = from + 10 + static_cast<int>(random() % (kPoses / 2 - 20));
+    const Eigen::Vector3d z = noisy({0, 0, 0}, 1, 2, random);
+    for (int i = 0; i < 5; ++i) spoil(spoiled, from + i, to + i, z, pose_information(0.05, 0.015));
+  }
+  return spoiled;
 }
 
 /// Removes the edges between two vertices that follow each other.
@@ -207,6 +236,16 @@ TEST_CASE("graduation: false closures in groups that agree among themselves are 
   CHECK(score.precision >= 0.95);
   CHECK(score.recall >= 0.95);
   CHECK(score.chi2_error < 1e-6);
+}
+
+// The narrowing loss ends in a wrong world there. What is grown from the odometry, surest closures first, does not.
+TEST_CASE("graduation: false closures in groups are found even if they outnumber the right ones") {
+  const TypeRegistry registry = full_registry();
+  for (const std::uint64_t seed : {1, 4}) {
+    const Score score = graduate_and_score(reckoned_walk(60, seed), "walk from dead reckoning", registry);
+    CHECK(score.precision >= 0.99);
+    CHECK(score.recall == 1);
+  }
 }
 
 TEST_CASE("graduation: a false closure beside the odometry of neighbours is found, and the odometry stays") {
@@ -341,9 +380,9 @@ TEST_CASE("innovation: the minimum rises by it with the edge, falls by it withou
   const double with = optimize(all, *algorithm, *solver, {}).final_chi2;
   Graph kept = without_edges(all, edge);
   CHECK(kept.edge_count() + 1 == all.edge_count());
-  CHECK(innovations(all, edge, Membership::inside, all, *solver)[0] ==
+  CHECK(innovations(all, edge, Membership::inside, all)[0].squared ==
         Approx(with - optimize(kept, *algorithm, *solver, {}).final_chi2).epsilon(0.02));
-  CHECK(innovations(all, edge, Membership::outside, kept, *solver)[0] ==
+  CHECK(innovations(all, edge, Membership::outside, kept)[0].squared ==
         Approx(with - kept.chi2()).epsilon(0.02));
 }
 

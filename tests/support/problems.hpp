@@ -68,10 +68,11 @@ inline Eigen::Vector3d noisy(const Eigen::Vector3d& z, double sigma_m, double si
 /// A random walk along the streets of a square grid, 1 m per step. Wherever the walk meets its
 /// own way, an edge goes to the last earlier pose. The initial guess is the truth plus noise;
 /// nothing is fixed.
-[[nodiscard]] inline waymark::Graph grid_walk(int poses, int side, std::uint64_t seed = 1) {
+[[nodiscard]] inline waymark::Graph grid_walk(int poses, int side, std::uint64_t seed = 1,
+                                              double sigma_m = 0.02, double sigma_rad = 0.005) {
   using namespace waymark;
   std::mt19937_64 random(seed);
-  const Eigen::Matrix3d information = pose_information(0.02, 0.005);
+  const Eigen::Matrix3d information = pose_information(sigma_m, sigma_rad);
   Graph graph;
   std::vector<Pose2<double>> truth;
   std::map<std::pair<int, int>, int> last_visit;
@@ -86,7 +87,7 @@ inline Eigen::Vector3d noisy(const Eigen::Vector3d& z, double sigma_m, double si
     graph.add_vertex<VertexSe2>(VertexId(i), {start[0], start[1], start[2]});
     const auto join = [&](int from) {
       const auto z = between(truth[static_cast<std::size_t>(from)], truth.back()).vector();
-      graph.add_edge(EdgeSe2{noisy(z, 0.02, 0.005, random)}, {from, i}, information);
+      graph.add_edge(EdgeSe2{noisy(z, sigma_m, sigma_rad, random)}, {from, i}, information);
     };
     if (i > 0) join(i - 1);
     const auto [known, first] = last_visit.try_emplace({x, y}, i);
