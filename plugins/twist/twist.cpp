@@ -43,9 +43,9 @@ std::vector<OptionInfo> options() {
     all.insert(all.end(), more.begin(), more.end());
   };
   append(mount_options());
-  append(state_options("scale", "1", "constant", "0.02", "5e-4",
+  append(state_options("scale", "1", "random_walk", "0.02", "5e-4",
                        "scale error of the velocities, true velocity = (1 + scale) reading"));
-  append(state_options("yaw_rate_bias", "rad/s", "constant", "0.005", "2e-5",
+  append(state_options("yaw_rate_bias", "rad/s", "random_walk", "0.005", "2e-5",
                        "bias of the yaw rates, true yaw rate = reading - bias"));
   all.push_back(calibration_period_option());
   return all;
@@ -207,7 +207,7 @@ void register_types(TypeRegistry& registry) {
   registry.add_edge<EdgeTwistBiasWalk>();
   registry.add_sensor_model(
       {"twist", "twists from visual or lidar odometry, or from any other relative source", columns(),
-       options(), [](const CheckedOptions& options) { return std::make_unique<Twist>(options); }, "none"});
+       options(), [](const CheckedOptions& options) { return std::make_unique<Twist>(options); }});
 }
 
 }  // namespace
