@@ -45,7 +45,7 @@ bool convex_at(const Loss& loss, double squared) {
 /// Returns how many operations a factorisation of the normal equations takes.
 double factorization_operations(const Graph& graph) {
   Structure structure;
-  structure.build(graph, find_gauge(graph).held);
+  structure.build(graph, find_gauge(graph, PartlyAnchored::hold_vertex).held);
   double sum = 0;
   for (const Supernode& node : analyze_blocks(structure.pattern()).nodes) {
     if (node.links > 0) continue;  // linear
@@ -249,7 +249,12 @@ std::vector<EdgePlace> Graduation::grown_from(std::vector<EdgePlace> out) {
   constexpr double kTogether = 2;  // of the looseness, between the first and the last that return at a time
   std::vector<EdgePlace> refused;  // had returned, and were contradicted by others
   for (int split = 0; split < kMaxSplits && !interrupted_; ++split) {
-    const Verdict verdict = optimize_without(out);
+    Verdict verdict;
+    try {
+      verdict = optimize_without(out);
+    } catch (const InputError&) {
+      break;  // what is trusted determines no solution
+    }
     const Graph kept = without_edges(graph_, verdict.outliers);
     if (split == 0 && !joining(verdict, kept).empty()) break;  // the innovations would take parts for known
     const std::vector<Innovation> innovation =
@@ -475,10 +480,10 @@ GraduationResult Graduation::run() {
     search_from_trusted(true);
     if (!parallels_.empty()) search_from_trusted(false);
   }
+  if (best_.values.empty()) best_ = optimize_without(dense_ ? candidates_ : std::vector<EdgePlace>{});
   // 3. Doubt what was trusted: single edges, and all of them if they cost many of the others.
   for (int round = 0; round < kMaxDoubts && suspicious && options_.doubts_trusted && doubt_trusted(); ++round)
     search();
-  if (best_.values.empty()) best_ = optimize_without({});
   if (!interrupted_ && options_.doubts_trusted && suspicious && !dense_ && has_many_outliers()) {
     graph_.set_values(of_all_edges);
     std::vector<EdgePlace> all = trusted_;
