@@ -12,6 +12,8 @@
 #include <waymark/core/robust/chi_square.hpp>
 #include <waymark/core/robust/graduation.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
+#include <waymark/types_se2/edge_se2.hpp>
+#include <waymark/types_se2/g2o_edges.hpp>
 
 #include "support/problems.hpp"
 #include "support/registry.hpp"
@@ -469,25 +471,27 @@ TEST_CASE("innovation: what a part that is anchored in part is free to do contra
   CHECK(std::isinf(told.looseness));
 }
 
-TEST_CASE("graduation: of closures that contradict each other one holds two parts together, and is not left out") {
-  // Together they agree on nothing, so that all of them are beyond their bounds, and none is near enough to return.
+TEST_CASE(
+    "graduation: of closures that contradict each other one holds two parts together, and is not left out") {
+  // The second track begins in the middle between two closures: no loss moves it to either, so both are left out on the
+  // way, and compared with where it is, neither agrees.
   const TypeRegistry registry = full_registry();
   Graph graph;
   for (const int track : {0, 1}) {
     for (int i = 0; i < 10; ++i) {
-      const VertexIndex v = graph.add_vertex<VertexSe2>(VertexId(100 * track + i), {1.0 * i, 10.0 * track, 0});
+      const VertexIndex v =
+          graph.add_vertex<VertexSe2>(VertexId(100 * track + i), {1.0 * i, 10.0 * track, 0});
       if (i > 0) graph.add_edge(EdgeSe2{{1, 0, 0}}, {v - 1, v}, pose_information(0.05, 0.01));
     }
   }
-  for (const Eigen::Vector3d& z : {Eigen::Vector3d(20, 5, 1), {-10, 25, -2}, {5, -30, 2.5}, {-25, -5, 0.3}})
-    graph.add_edge(EdgeSe2{z}, {5, 15}, pose_information(0.05, 0.01));
+  for (const double distance : {7.0, 13.0})
+    graph.add_edge(EdgeSe2{{0, distance, 0}}, {5, 15}, pose_information(0.05, 0.01));
   const auto algorithm = registry.make_algorithm("dogleg");
   const auto solver = registry.make_linear_solver("eigen");
   const GraduationResult result = graduate(graph, *algorithm, *solver, {});
-  CHECK(result.outliers.size() == 3);
+  CHECK(result.outliers.size() == 1);
   CHECK(result.distrusted.empty());
   CHECK(joining_edges(graph, result.outliers, without_edges(graph, result.outliers)).empty());
-  CHECK(graph.chi2() > result.summary.final_chi2);
   CHECK(result.summary.final_chi2 == Approx(0).margin(1e-6));  // one closure contradicts no odometry
 }
 
