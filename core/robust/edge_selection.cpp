@@ -66,21 +66,41 @@ class UnseenMotions {
   [[nodiscard]] Eigen::MatrixXd moving(std::span<const VertexIndex> vertices,
                                        std::span<const Eigen::MatrixXd> jacobians) const {
     Eigen::MatrixXd result(jacobians[0].rows(), 0);
-    if (parts_.empty()) return result;
-    for (std::size_t k = 0; k < vertices.size(); ++k) {
-      const std::int32_t component = components_.of[at(vertices[k])];
-      const std::int32_t p = component < 0 ? -1 : part_[at(component)];
-      if (p < 0) continue;
-      const PartlyFree& part = parts_[at(p)];
-      const Eigen::Index before = result.cols();
-      result.conservativeResize(Eigen::NoChange, before + part.motions.cols());
-      result.rightCols(part.motions.cols()) =
-          jacobians[k] * detail::motion_of(graph_, vertices[k], part.place) * part.motions;
+    std::vector<std::int32_t> parts;
+    for (const VertexIndex v : vertices) {
+      const std::int32_t part = part_of(v);
+      if (part < 0 || std::find(parts.begin(), parts.end(), part) != parts.end()) continue;
+      parts.push_back(part);
+      const Eigen::MatrixXd moved = moving_by(part, vertices, jacobians);
+      result.conservativeResize(Eigen::NoChange, result.cols() + moved.cols());
+      result.rightCols(moved.cols()) = moved;
     }
     return result;
   }
 
  private:
+  /// Returns the part of a vertex; -1: it belongs to none.
+  [[nodiscard]] std::int32_t part_of(VertexIndex v) const {
+    const std::int32_t component = parts_.empty() ? -1 : components_.of[at(v)];
+    return component < 0 ? -1 : part_[at(component)];
+  }
+
+  /// Returns the same for one part, all vertices of which move together; what cancels is 0.
+  [[nodiscard]] Eigen::MatrixXd moving_by(std::int32_t part, std::span<const VertexIndex> vertices,
+                                          std::span<const Eigen::MatrixXd> jacobians) const {
+    constexpr double kRounding = 1e-6;
+    const auto& [vertex, place, motions] = parts_[at(part)];
+    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(jacobians[0].rows(), motions.cols());
+    Eigen::MatrixXd terms = moved;
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+      if (part_of(vertices[k]) != part) continue;
+      const Eigen::MatrixXd motion = detail::motion_of(graph_, vertices[k], place);
+      moved += jacobians[k] * motion * motions;
+      terms += jacobians[k].cwiseAbs() * motion.cwiseAbs() * motions.cwiseAbs();
+    }
+    return (moved.array().abs() > kRounding * terms.array()).select(moved, 0);
+  }
+
   const Graph& graph_;
   const std::vector<PartlyFree>& parts_;
   detail::Components components_;
@@ -93,6 +113,28 @@ Eigen::MatrixXd spanned(const Eigen::MatrixXd& matrix) {
   if (matrix.cols() == 0) return matrix;
   const SingularValues svd = singular_values(matrix);
   return svd.left.leftCols((svd.values.array() > kRounding * svd.values[0]).count());
+}
+
+/// Compares an error with what the other edges predict.
+/// @param root of the information @param predicted J P J^T @param open how motions that contradict nothing move it
+Innovation compare(const Eigen::VectorXd& e, const Eigen::MatrixXd& root, const Eigen::MatrixXd& predicted,
+                   const Eigen::MatrixXd& open, Membership membership) {
+  if (root.rows() == 0) return {0, 0};
+  // With Omega = A^T A: (Omega^-1 + C)^-1 = A^T (I + A C A^T)^-1 A also holds if Omega is singular.
+  const double sign = membership == Membership::outside ? 1 : -1;
+  const auto [spread, directions] = symmetric_eigen(Eigen::MatrixXd::Identity(root.rows(), root.rows()) +
+                                                    sign * root * predicted * root.transpose());
+  Innovation result{0, 0.5 * spread.array().max(std::numeric_limits<double>::min()).log().sum()};
+  // For an edge inside, directions that no other edge knows leave no spread, and rounding
+  // would decide.
+  if (membership == Membership::inside && !(spread[0] > 1e-9 * spread[root.rows() - 1])) return result;
+  const Eigen::MatrixXd scaled =
+      spread.cwiseSqrt().cwiseInverse().asDiagonal() * directions.transpose() * root;
+  const Eigen::VectorXd along = scaled * e;
+  const Eigen::MatrixXd free = spanned(scaled * open);
+  if (free.cols() > 0) result.looseness = std::numeric_limits<double>::infinity();
+  result.squared = (along - free * (free.transpose() * along)).squaredNorm();
+  return result;
 }
 
 }  // namespace
@@ -126,27 +168,10 @@ std::vector<Innovation> innovations(const Graph& graph, std::span<const EdgePlac
     }
     const Eigen::MatrixXd predicted =
         rows.empty() ? Eigen::MatrixXd::Zero(e.size(), e.size()) : form(rows);  // J P J^T
-    // With Omega = A^T A: (Omega^-1 + C)^-1 = A^T (I + A C A^T)^-1 A also holds if Omega is singular.
-    const Eigen::MatrixXd root = information_root(batch.information(edges[i].edge));
-    result[i] = {0, 0};
-    if (root.rows() == 0) continue;
-    const double sign = membership == Membership::outside ? 1 : -1;
-    const auto [spread, directions] = symmetric_eigen(Eigen::MatrixXd::Identity(root.rows(), root.rows()) +
-                                                      sign * root * predicted * root.transpose());
-    // For an edge inside, directions that no other edge knows leave no spread, and rounding
-    // would decide.
-    const bool checked = membership == Membership::outside || spread[0] > 1e-9 * spread[root.rows() - 1];
-    const Eigen::VectorXd scale = spread.cwiseSqrt().cwiseInverse();
-    Eigen::VectorXd along = scale.asDiagonal() * (directions.transpose() * (root * e));
-    result[i].looseness = 0.5 * spread.array().max(std::numeric_limits<double>::min()).log().sum();
-    if (membership == Membership::outside) {
-      // What parts that are anchored in part are free to do contradicts nothing.
-      const Eigen::MatrixXd open =
-          spanned(scale.asDiagonal() * directions.transpose() * root * unseen.moving(vertices, jacobians));
-      along -= open * (open.transpose() * along);
-      if (open.cols() > 0) result[i].looseness = kUnknown;
-    }
-    if (checked) result[i].squared = along.squaredNorm();
+    const bool is_outside = membership == Membership::outside;
+    const Eigen::MatrixXd open =
+        is_outside ? unseen.moving(vertices, jacobians) : Eigen::MatrixXd(e.size(), 0);
+    result[i] = compare(e, information_root(batch.information(edges[i].edge)), predicted, open, membership);
   }
   return result;
 }

@@ -472,6 +472,25 @@ TEST_CASE("innovation: what a part that is anchored in part is free to do contra
 }
 
 TEST_CASE(
+    "innovation: what a part that is anchored in part is free to do explains no edge that it does not move") {
+  // Two poses turn about the fix of the first one. Another fix there, and another edge between them, see no turn.
+  Graph all;
+  all.add_vertex<VertexSe2>(VertexId(1), {500, 20, 0.5});
+  all.add_vertex<VertexSe2>(VertexId(2), {500 + std::cos(0.5), 20 + std::sin(0.5), 0.5});
+  all.add_edge(EdgePriorSe2Xy{{500, 20}}, {0}, Eigen::Matrix2d::Identity());
+  all.add_edge(EdgeSe2{{1, 0, 0}}, {0, 1}, Eigen::Matrix3d::Identity());
+  const std::vector<EdgePlace> edges = {
+      all.add_edge(EdgePriorSe2Xy{{500, 23}}, {0}, Eigen::Matrix2d::Identity()),
+      all.add_edge(EdgeSe2{{1.4, 0, 0}}, {0, 1}, Eigen::Matrix3d::Identity())};
+  const std::vector<Innovation> told =
+      innovations(all, edges, Membership::outside, without_edges(all, edges));
+  CHECK(told[0].squared == Approx(3.0 * 3.0 / (1 + 1)));
+  CHECK(told[1].squared == Approx(0.4 * 0.4 / (1 + 1)));
+  CHECK(told[0].looseness == Approx(0.5 * std::log(2.0 * 2.0)));
+  CHECK(told[1].looseness == Approx(0.5 * std::log(2.0 * 2.0 * 2.0)));
+}
+
+TEST_CASE(
     "graduation: of closures that contradict each other one holds two parts together, and is not left out") {
   // The second track begins in the middle between two closures: no loss moves it to either, so both are left out on the
   // way, and compared with where it is, neither agrees.
