@@ -5,6 +5,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/graph/graph.hpp>
+#include <waymark/core/registry/options.hpp>
 
 namespace waymark {
 namespace {
@@ -238,12 +239,14 @@ void Graph::check_triangles(const EdgeType& type, const double* information) {
       const double lower = information[c * n + r];
       const double upper = information[r * n + c];
       if (upper == 0 || upper == lower) continue;
-      const double size = std::sqrt(std::abs(information[c * n + c] * information[r * n + r]));
+      // the product of small numbers would be 0, and that of large ones infinite
+      const double size =
+          std::sqrt(std::abs(information[c * n + c])) * std::sqrt(std::abs(information[r * n + r]));
       if (!(std::abs(upper - lower) > kRounding * size)) continue;
       throw UsageError(type.tag +
                        ": the information matrix is not symmetric: its lower triangle is read, and row " +
-                       std::to_string(r) + ", column " + std::to_string(c) + " is " + std::to_string(lower) +
-                       " there, " + std::to_string(upper) + " above the diagonal");
+                       std::to_string(r) + ", column " + std::to_string(c) + " is " + shortest(lower) +
+                       " there, " + shortest(upper) + " above the diagonal");
     }
   }
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -101,6 +102,7 @@ class Loop {
   bool step_with_whole_curvature();
   bool give_up_whole_curvature();
   IterationRecord begin_record();
+  void keep(IterationRecord& record);
   double decrement_bound() const;
   bool converged_by(const Step& step, double step_size);
   bool has_more_to_gain(const IterationRecord& record) const;
@@ -109,7 +111,9 @@ class Loop {
   void accept(double trial_chi2);
   void retreat();
   bool crosses_jump(const IterationRecord& record);
-  bool makes_progress() const;
+  bool makes_progress();
+  /// The lowest chi2 after so many iterations, of the last ones.
+  double& best_after(std::size_t iterations) { return lowest_[iterations % lowest_.size()]; }
   void judge_crossing();
   void come_back();
   bool goes_back_from_above();
@@ -141,6 +145,7 @@ class Loop {
   bool present_is_best_ = true;
   double chi2_ = 0;
   double best_chi2_ = 0;
+  std::array<double, kStepsOfProgress + 1> lowest_{};  // in turn
   bool last_accepted_ = true;
   double gradient_ = 0;
   double unit_ = 1;  // of the information: a chi2 far below it is small
@@ -285,6 +290,13 @@ IterationRecord Loop::begin_record() {
   return record;
 }
 
+void Loop::keep(IterationRecord& record) {
+  record.seconds = seconds_since(start_);
+  summary_.records.push_back(record);
+  best_after(summary_.records.size()) = best_chi2_;
+  if (options_.observer) options_.observer(record);
+}
+
 bool Loop::converges_slowly() const {
   const std::vector<IterationRecord>& records = summary_.records;
   if (records.size() < 2) return false;
@@ -331,9 +343,7 @@ bool Loop::step_with_whole_curvature() {
   record.accepted = true;
   accept(trial_chi2);
   if (!converged) linearize(values_);
-  record.seconds = seconds_since(start_);
-  summary_.records.push_back(record);
-  if (options_.observer) options_.observer(record);
+  keep(record);
   return true;
 }
 
@@ -394,9 +404,7 @@ bool Loop::step_once() {
     if (linearized) linearize(values_);
   }
   last_accepted_ = record.accepted;
-  record.seconds = seconds_since(start_);
-  summary_.records.push_back(record);
-  if (options_.observer) options_.observer(record);
+  keep(record);
   return record.accepted;
 }
 
@@ -423,21 +431,17 @@ void Loop::retreat() {
   last_accepted_ = false;
 }
 
-/// Tells whether the last steps have lowered chi2 by a noticeable share, or are too few to tell: then the way on this
-/// side is good enough.
-bool Loop::makes_progress() const {
-  const std::vector<IterationRecord>& records = summary_.records;
-  if (records.size() < kStepsOfProgress) return true;
-  double decrease = 0;
-  for (std::size_t i = records.size() - kStepsOfProgress; i < records.size(); ++i)
-    decrease += records[i].accepted ? records[i].decrease : 0;
-  return decrease > kProgress * chi2_;
+/// Tells whether the last steps have lowered the lowest chi2 by a noticeable share, or are too few to tell: then the way
+/// on this side is good enough. Steps that were undone have lowered nothing.
+bool Loop::makes_progress() {
+  const std::size_t steps = summary_.records.size();
+  return steps < kStepsOfProgress || best_after(steps - kStepsOfProgress) - best_chi2_ > kProgress * chi2_;
 }
 
 /// Tells whether a rejected step is taken nevertheless, because chi2 jumps. The steps beyond the jump begin afresh.
 bool Loop::crosses_jump(const IterationRecord& record) {
   if (steps_beyond_jump_ > 0 || -record.decrease <= decrement_bound()) return false;
-  if (!jumps_.rejected(record.step, record.predicted_decrease - record.decrease) || makes_progress())
+  if (!jumps_.rejected(record.step, record.predicted_decrease - record.decrease, chi2_) || makes_progress())
     return false;
   steps_beyond_jump_ = kStepsBeyondJump;
   chi2_before_jump_ = best_chi2_;
@@ -476,6 +480,7 @@ bool Loop::goes_back_from_above() {
     return false;
   retreat();
   done_ = false;
+  if (steps_beyond_jump_ > 0) come_back();
   return true;
 }
 
@@ -510,7 +515,7 @@ Summary Loop::run() {
   summary_.records.reserve(static_cast<std::size_t>(std::min(options_.max_iterations, 1000)));
   values_ = graph_.values();
   best_.reserve(values_.size());  // not inside an iteration; untouched pages use no memory yet
-  chi2_ = best_chi2_ = summary_.initial_chi2 = linearize(values_);
+  chi2_ = best_chi2_ = best_after(0) = summary_.initial_chi2 = linearize(values_);
   if (!std::isfinite(chi2_) || !equations_.diagonal().allFinite() || not_finite_without_unknowns()) {
     finish(Termination::non_finite, "chi2 of the initial guess is not finite" + named_flaw());
   } else if (summary_.unknowns == 0) {
@@ -523,6 +528,7 @@ Summary Loop::run() {
       if (steps_beyond_jump_ > 0) judge_crossing();
       continue;
     }
+    if (done_) break;
     if (options_.cancel != nullptr && options_.cancel->load()) {
       finish(Termination::interrupted, text("interrupted after ", summary_.iterations, " iterations"));
     } else if (summary_.iterations >= options_.max_iterations) {

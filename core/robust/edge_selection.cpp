@@ -1,16 +1,13 @@
 #include <algorithm>
 #include <limits>
 
-#include <waymark/core/base/detail/disjoint_sets.hpp>
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/linear/detail/information_root.hpp>
 #include <waymark/core/linear/inverse_form.hpp>
 #include <waymark/core/robust/edge_selection.hpp>
 #include <waymark/core/system/detail/components.hpp>
-#include <waymark/core/system/detail/incidence.hpp>
 #include <waymark/core/system/gauge.hpp>
-#include <waymark/core/system/held_marks.hpp>
 #include <waymark/core/system/normal_equations.hpp>
 
 namespace waymark {
@@ -50,19 +47,113 @@ Graph without_edges(const Graph& graph, std::span<const EdgePlace> edges) {
   return result;
 }
 
+namespace {
+
+using detail::at;
+
+/// The motions that no edge sees of parts that are anchored in part.
+class UnseenMotions {
+ public:
+  UnseenMotions(const Graph& graph, const std::vector<PartlyFree>& parts) : graph_(graph), parts_(parts) {
+    if (parts.empty()) return;
+    components_ = detail::describe_components(graph);
+    part_.assign(components_.first.size(), -1);
+    for (std::size_t p = 0; p < parts.size(); ++p)
+      part_[at(components_.of[at(parts[p].vertex)])] = static_cast<std::int32_t>(p);
+  }
+
+  /// Returns how they move an error: one column each, none if they do not.
+  [[nodiscard]] Eigen::MatrixXd moving(std::span<const VertexIndex> vertices,
+                                       std::span<const Eigen::MatrixXd> jacobians) const {
+    Eigen::MatrixXd result(jacobians[0].rows(), 0);
+    std::vector<std::int32_t> parts;
+    for (const VertexIndex v : vertices) {
+      const std::int32_t part = part_of(v);
+      if (part < 0 || std::find(parts.begin(), parts.end(), part) != parts.end()) continue;
+      parts.push_back(part);
+      const Eigen::MatrixXd moved = moving_by(part, vertices, jacobians);
+      result.conservativeResize(Eigen::NoChange, result.cols() + moved.cols());
+      result.rightCols(moved.cols()) = moved;
+    }
+    return result;
+  }
+
+ private:
+  /// Returns the part of a vertex; -1: it belongs to none.
+  [[nodiscard]] std::int32_t part_of(VertexIndex v) const {
+    const std::int32_t component = parts_.empty() ? -1 : components_.of[at(v)];
+    return component < 0 ? -1 : part_[at(component)];
+  }
+
+  /// Returns the same for one part, all vertices of which move together; what cancels is 0.
+  [[nodiscard]] Eigen::MatrixXd moving_by(std::int32_t part, std::span<const VertexIndex> vertices,
+                                          std::span<const Eigen::MatrixXd> jacobians) const {
+    constexpr double kRounding = 1e-6;
+    const auto& [vertex, place, motions] = parts_[at(part)];
+    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(jacobians[0].rows(), motions.cols());
+    Eigen::MatrixXd terms = moved;
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+      if (part_of(vertices[k]) != part) continue;
+      const Eigen::MatrixXd motion = detail::motion_of(graph_, vertices[k], place);
+      moved += jacobians[k] * motion * motions;
+      terms += jacobians[k].cwiseAbs() * motion.cwiseAbs() * motions.cwiseAbs();
+    }
+    return (moved.array().abs() > kRounding * terms.array()).select(moved, 0);
+  }
+
+  const Graph& graph_;
+  const std::vector<PartlyFree>& parts_;
+  detail::Components components_;
+  std::vector<std::int32_t> part_;  // per component; -1: it is no such part
+};
+
+/// Returns the directions that the columns of a matrix span, as orthonormal columns.
+Eigen::MatrixXd spanned(const Eigen::MatrixXd& matrix) {
+  constexpr double kRounding = 1e-6;
+  if (matrix.cols() == 0) return matrix;
+  const SingularValues svd = singular_values(matrix);
+  return svd.left.leftCols((svd.values.array() > kRounding * svd.values[0]).count());
+}
+
+/// Compares an error with what the other edges predict.
+/// @param root of the information @param predicted J P J^T @param open how motions that contradict nothing move it
+Innovation compare(const Eigen::VectorXd& e, const Eigen::MatrixXd& root, const Eigen::MatrixXd& predicted,
+                   const Eigen::MatrixXd& open, Membership membership) {
+  if (root.rows() == 0) return {0, 0};
+  // With Omega = A^T A: (Omega^-1 + C)^-1 = A^T (I + A C A^T)^-1 A also holds if Omega is singular.
+  const double sign = membership == Membership::outside ? 1 : -1;
+  const auto [spread, directions] = symmetric_eigen(Eigen::MatrixXd::Identity(root.rows(), root.rows()) +
+                                                    sign * root * predicted * root.transpose());
+  Innovation result{0, 0.5 * spread.array().max(std::numeric_limits<double>::min()).log().sum()};
+  // For an edge inside, directions that no other edge knows leave no spread, and rounding
+  // would decide.
+  if (membership == Membership::inside && !(spread[0] > 1e-9 * spread[root.rows() - 1])) return result;
+  const Eigen::MatrixXd scaled =
+      spread.cwiseSqrt().cwiseInverse().asDiagonal() * directions.transpose() * root;
+  const Eigen::VectorXd along = scaled * e;
+  const Eigen::MatrixXd free = spanned(scaled * open);
+  if (free.cols() > 0) result.looseness = std::numeric_limits<double>::infinity();
+  result.squared = (along - free * (free.transpose() * along)).squaredNorm();
+  return result;
+}
+
+}  // namespace
+
 std::vector<Innovation> innovations(const Graph& graph, std::span<const EdgePlace> edges,
                                     Membership membership, const Graph& kept) {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
   std::vector<Innovation> result(edges.size(), {kUnknown, kUnknown});
   if (edges.empty()) return result;
   Structure structure;
-  structure.build(kept, find_gauge(kept).held);
+  const Gauge gauge = find_gauge(kept);
+  structure.build(kept, gauge.held);
   NormalEquations equations(kept, structure);
   (void)equations.linearize(kept.values());
   BlockCholesky cholesky;
   cholesky.analyze(structure.pattern());
   if (cholesky.factorize(equations.hessian()) != FactorStatus::ok) return result;
   InverseForm form(cholesky);
+  const UnseenMotions unseen(kept, gauge.partly);
   Eigen::VectorXd e;
   std::vector<Eigen::MatrixXd> jacobians;
   std::vector<BlockRow> rows;
@@ -77,79 +168,10 @@ std::vector<Innovation> innovations(const Graph& graph, std::span<const EdgePlac
     }
     const Eigen::MatrixXd predicted =
         rows.empty() ? Eigen::MatrixXd::Zero(e.size(), e.size()) : form(rows);  // J P J^T
-    // With Omega = A^T A: (Omega^-1 + C)^-1 = A^T (I + A C A^T)^-1 A also holds if Omega is singular.
-    const Eigen::MatrixXd root = information_root(batch.information(edges[i].edge));
-    result[i] = {0, 0};
-    if (root.rows() == 0) continue;
-    const double sign = membership == Membership::outside ? 1 : -1;
-    const auto [spread, directions] = symmetric_eigen(Eigen::MatrixXd::Identity(root.rows(), root.rows()) +
-                                                      sign * root * predicted * root.transpose());
-    // For an edge inside, directions that no other edge knows leave no spread, and rounding
-    // would decide.
-    const bool checked = membership == Membership::outside || spread[0] > 1e-9 * spread[root.rows() - 1];
-    const Eigen::VectorXd along = directions.transpose() * (root * e);
-    if (checked) result[i].squared = along.cwiseAbs2().cwiseQuotient(spread).sum();
-    result[i].looseness = 0.5 * spread.array().max(std::numeric_limits<double>::min()).log().sum();
-  }
-  return result;
-}
-
-namespace {
-
-using detail::at;
-
-/// The parts of a graph that its edges join, and that further edges would join.
-class Parts {
- public:
-  explicit Parts(const Graph& graph)
-      : fixed_(static_cast<std::int32_t>(graph.vertex_count())),
-        sets_(graph.vertex_count() + 1),
-        motions_(graph.vertex_count() + 1, 0) {
-    const std::vector<std::int32_t> component = detail::find_components(graph);
-    const std::vector<char> held = find_gauge(graph, PartlyAnchored::hold_vertex).held;
-    const std::vector<char> has_edge = vertices_with_edges(graph);
-    for (VertexIndex v = 0; v < fixed_; ++v) {
-      const std::int32_t part = sets_.join(v, graph.fixed(v) ? fixed_ : component[at(v)]);
-      if (graph.fixed(v)) continue;
-      if (has_edge[at(v)] == 0)
-        motions_[at(part)] = graph.vertex_type(v).tangent_size;
-      else if (is_wholly_held(held[at(v)]))
-        motions_[at(part)] = kOfPoses;
-    }
-  }
-
-  /// Joins the parts of two vertices, if one of them may be moved so that an error becomes zero.
-  /// @param dimension of the error
-  bool join(std::span<const VertexIndex> vertices, int dimension) {
-    if (vertices.size() != 2) return false;
-    const std::int32_t one = sets_.of(vertices[0]);
-    const std::int32_t other = sets_.of(vertices[1]);
-    if (one == other) return false;
-    // The one that is moved loses its motions. 0: nothing moves it.
-    const auto [fewer, more] = std::minmax(motions_[at(one)], motions_[at(other)]);
-    const int of_moved = fewer == 0 ? more : fewer;
-    if (of_moved == 0 || dimension < of_moved) return false;
-    motions_[at(sets_.join(one, other))] = fewer == 0 ? 0 : more;
-    return true;
-  }
-
- private:
-  static constexpr int kOfPoses = 3;
-
-  std::int32_t fixed_;  // stands for all fixed vertices
-  detail::DisjointSets sets_;
-  std::vector<int> motions_;  // of each part, by its name: how many rigid ones nothing stops
-};
-
-}  // namespace
-
-std::vector<EdgePlace> joining_edges(const Graph& graph, std::span<const EdgePlace> edges,
-                                     const Graph& kept) {
-  Parts parts(kept);
-  std::vector<EdgePlace> result;
-  for (const EdgePlace place : edges) {
-    const EdgeBatchBase& batch = graph.batch(place.batch);
-    if (parts.join(batch.vertices(place.edge), batch.error_dimension(place.edge))) result.push_back(place);
+    const bool is_outside = membership == Membership::outside;
+    const Eigen::MatrixXd open =
+        is_outside ? unseen.moving(vertices, jacobians) : Eigen::MatrixXd(e.size(), 0);
+    result[i] = compare(e, information_root(batch.information(edges[i].edge)), predicted, open, membership);
   }
   return result;
 }

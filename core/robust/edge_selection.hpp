@@ -41,16 +41,11 @@ struct Innovation {
 /// an edge inside that no other edge checks, and infinite for all edges if the normal equations are
 /// not positive definite.
 ///
-/// Vertices that are held, fixed, or joined by no edge of `kept` count as known. The cost is one factorisation, and per
+/// Vertices that are held, fixed, or joined by no edge of `kept` count as known. A part that is held in some coordinates
+/// only is free to do what its edges do not see: an edge outside is compared after the motion that suits it best, and
+/// its looseness is infinite if that moves its error. The cost is one factorisation, and per
 /// edge the part of a solve that inverse_form.hpp tells.
 [[nodiscard]] std::vector<Innovation> innovations(const Graph& graph, std::span<const EdgePlace> edges,
                                                   Membership membership, const Graph& kept);
-
-/// Returns edges that would join parts of `kept` which nothing joins and of which nothing anchors one: its rigid
-/// motions then make the error zero, so that nothing contradicts such an edge. innovations() holds each part where it is and
-/// cannot tell. Of several edges between the same parts the first one is returned; the others may contradict it.
-/// @param edges of `graph`, none of them in `kept`, those that are preferred first
-[[nodiscard]] std::vector<EdgePlace> joining_edges(const Graph& graph, std::span<const EdgePlace> edges,
-                                                   const Graph& kept);
 
 }  // namespace waymark

@@ -36,6 +36,7 @@
 #include <waymark/core/base/export.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/robust/edge_selection.hpp>
+#include <waymark/core/robust/joining_edges.hpp>
 #include <waymark/core/robust/trust.hpp>
 
 namespace WAYMARK_EXPORT waymark {

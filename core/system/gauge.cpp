@@ -178,6 +178,7 @@ Gauge find_gauge(const Graph& graph, PartlyAnchored partly) {
   for (std::size_t c = 0; c < components.first.size(); ++c) {
     const Judged judged = judge(graph, components, c, information[c], unit);
     if (judged.is_anchored()) continue;
+    if (judged.rank > 0) gauge.partly.push_back({judged.holds, components.places[c], judged.unseen});
     if (partly == PartlyAnchored::hold_coordinates) {
       // Only motions that stay unseen wherever the vertices go are no part of the solution.
       const bool is_gauge = judged.motions == 3 && !judged.is_special && !has_stamps(graph, components, c);

@@ -6,10 +6,19 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 
 namespace WAYMARK_EXPORT waymark {
+
+/// What is left free of a component that is anchored in part.
+struct PartlyFree {
+  VertexIndex vertex = -1;       ///< one of the component
+  RigidMotionView::Place place;  ///< of the component
+  Eigen::MatrixXd motions;       ///< 3 x 1 or 3 x 2: what no edge sees, along x, along y and about the place
+};
 
 /// The vertices that are held so that the problem is determined, and the messages for the user.
 struct Gauge {
@@ -17,6 +26,7 @@ struct Gauge {
   /// are not counted)
   std::vector<char> held;
   std::vector<std::string> messages;  ///< one sentence per component that was held
+  std::vector<PartlyFree> partly;     ///< one per component that is anchored in part
 };
 
 /// What to do with a component that is anchored in part.

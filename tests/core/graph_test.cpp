@@ -84,10 +84,27 @@ TEST_CASE("graph: information is its lower triangle, and an upper one that says 
   const Eigen::Matrix3d upper = lower.transpose();
   const std::string told =
       "EDGE_SE2: the information matrix is not symmetric: its lower triangle is read, and row 1, column 0 is "
-      "0.000000 there, 2.000000 above the diagonal";
+      "0 there, 2 above the diagonal";
   CHECK_THROWS_WITH(graph.add_edge(EdgeSe2{{1, 0, 0}}, {0, 1}, upper), told);
   CHECK_THROWS_WITH(graph.add_edge(type, std::array{0, 1}, std::array{1.0, 0.0, 0.0}, upper), told);
   CHECK(graph.edge_count() == 2);
+}
+
+TEST_CASE(
+    "graph: the triangles of an information of very small or large numbers are compared beside its diagonal") {
+  Graph graph;
+  graph.add_vertex<VertexSe2>(VertexId{1}, {0, 0, 0});
+  graph.add_vertex<VertexSe2>(VertexId{2}, {1, 0, 0});
+  for (const double size : {1e-200, 1.0, 1e200}) {  // the square of the first is 0, that of the last infinite
+    INFO(size);
+    Eigen::Matrix3d rounded = size * Eigen::Matrix3d::Identity();
+    rounded(1, 0) = 0.5 * size;
+    rounded(0, 1) = 0.5 * size * (1 + 1e-9);
+    CHECK_NOTHROW(graph.add_edge(EdgeSe2{{1, 0, 0}}, {0, 1}, rounded));
+    Eigen::Matrix3d other = rounded;
+    other(0, 1) = 0.6 * size;
+    CHECK_THROWS_AS(graph.add_edge(EdgeSe2{{1, 0, 0}}, {0, 1}, other), UsageError);
+  }
 }
 
 TEST_CASE("graph: the library says the version of its headers") {

@@ -7,7 +7,9 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/optimize/detail/jump_watch.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/core/system/normal_equations.hpp>
 
 #include "support/problems.hpp"
 #include "support/registry.hpp"
@@ -54,6 +56,58 @@ class FailingSolver final : public LinearSolver {
  private:
   int good_;
   std::unique_ptr<LinearSolver> inner_;
+};
+
+/// An error that is 1 at x = 1, hardly less from there on down, and jumps beyond.
+struct EdgeJump {
+  static constexpr std::string_view kTag = "EDGE_JUMP";
+  static constexpr std::string_view kForm = "jump";
+  static constexpr int kErrorDimension = 1;
+  using Vertices = VertexList<VertexScale>;
+  static constexpr auto fields() {
+    return std::array{field<&EdgeJump::slope>("slope"), field<&EdgeJump::beyond>("beyond")};
+  }
+
+  template <typename T>
+  Eigen::Matrix<T, 1, 1> error(const T& x) const {
+    const T way = x - T(1.0);
+    return Eigen::Matrix<T, 1, 1>(way > T(0.0) ? T(beyond) + T(slope) * way : T(1.0) - T(kFaint) * way);
+  }
+
+  static constexpr double kFaint = 1e-3;
+  double slope = 0;
+  double beyond = 0;
+};
+
+Graph jump_at_1(const EdgeJump& edge) {
+  Graph graph;
+  graph.add_vertex<VertexScale>(VertexId{0}, {1});
+  graph.add_edge(edge, {0}, Eigen::Matrix<double, 1, 1>::Identity());
+  return graph;
+}
+
+/// Proposes to go up by 1, after each rejection by half as much. Beyond the jump it goes up by 1, and retreats where all
+/// is flat.
+class HalvingSteps final : public Algorithm {
+ public:
+  void reset() override { length_ = 1; }
+  [[nodiscard]] ProposalStatus propose(const NormalEquations& equations, LinearSolver&, double,
+                                       Step& step) override {
+    const double gradient = std::abs(equations.gradient()[0]);
+    if (gradient == 0) return ProposalStatus::retreat;
+    step.delta = Eigen::VectorXd::Constant(1, gradient > 10 * EdgeJump::kFaint ? 1 : length_);
+    step.predicted_decrease = EdgeJump::kFaint;
+    step.newton_decrement = 1;
+    step.full_newton = false;
+    step.kind = "halved";
+    return ProposalStatus::ok;
+  }
+  [[nodiscard]] bool acceptable(double gain_ratio) const override { return gain_ratio > 0; }
+  void accepted(const Step&, double) override {}
+  void rejected(const Step&, double) override { length_ /= 2; }
+
+ private:
+  double length_ = 1;
 };
 
 /// A measured scalar: e = x - measured.
@@ -177,6 +231,37 @@ TEST_CASE("optimizer: an algorithm that climbed goes back to the lowest chi2 by 
   CHECK(climber.gradients[3] == climber.gradients[0]);
   CHECK(summary.termination == Termination::stalled);
   CHECK(graph.value(0)[0] == 2);
+}
+
+TEST_CASE("optimizer: a crossing of a jump that ends where all is flat is counted as futile") {
+  // Steps are rejected 11 times, until there is no progress of 10 steps; then once and 6 times, then once and 12 times.
+  Graph graph = jump_at_1({.slope = 0, .beyond = 2});
+  HalvingSteps steps;
+  const Summary summary = optimize(graph, steps, *registry().make_linear_solver("eigen"), {});
+  CHECK(summary.termination == Termination::stalled);
+  CHECK_THAT(summary.message, Contains("chi2 jumps by 3"));  // 2^2 - 1^2
+  CHECK(summary.iterations == 11 + 7 + 13);
+  CHECK(graph.value(0)[0] == 1);
+}
+
+TEST_CASE("optimizer: steps beyond a jump that were undone are no progress on this side") {
+  // Beyond the jump 15 steps lower chi2 from 3^2 to 2.25^2 and are undone. The next crossing is as soon as the watch has
+  // patience for, once and 6 times.
+  Graph graph = jump_at_1({.slope = -0.05, .beyond = 3});
+  HalvingSteps steps;
+  const Summary summary = optimize(graph, steps, *registry().make_linear_solver("eigen"), {});
+  std::vector<int> crossings;
+  for (const IterationRecord& record : summary.records)
+    if (record.accepted && record.decrease < 0) crossings.push_back(record.iteration);
+  CHECK(crossings == std::vector{11, 11 + 15 + 7, 11 + 15 + 7 + 15 + 13});
+}
+
+TEST_CASE(
+    "jump watch: rejections begin anew after a noticeable progress, not after steps that crawl to the jump") {
+  detail::JumpWatch watch;
+  for (const double length : {1.0, 0.4, 0.2}) CHECK_FALSE(watch.rejected(length, 5, 100));
+  for (const double length : {0.1, 0.04, 0.02}) CHECK_FALSE(watch.rejected(length, 5, 98));
+  CHECK(watch.rejected(0.01, 5, 97.5));  // the third one shorter than half the first at 98
 }
 
 TEST_CASE("optimizer: damped and truncated methods find the minimum where full steps diverge") {

@@ -148,4 +148,29 @@ TEST_CASE("joined robots: a few false pairs of landmarks do not turn a robot") {
   }
 }
 
+TEST_CASE(
+    "joined robots: two landmarks that are not as far apart for one robot as for another tell nothing") {
+  // Two tracks of two poses see two landmarks: 4 m apart each, or for the second robot 7 m.
+  const TypeRegistry registry = full_registry();
+  for (const double apart_m : {4.0, 7.0}) {
+    Graph graph;
+    for (const VertexIndex v : {0, 1, 2, 3}) graph.add_vertex<VertexSe2>(VertexId{v}, {1.0 * v, 0, 0});
+    for (const VertexIndex v : {0, 2})
+      graph.add_edge(EdgeSe2{{1, 0, 0}}, {v, v + 1}, pose_information(0.1, 0.01));
+    for (const VertexIndex point : {4, 5}) graph.add_vertex<VertexXy>(VertexId{point}, {0, 0});
+    const Eigen::Matrix2d information = 25 * Eigen::Matrix2d::Identity();
+    graph.add_edge(EdgeSe2Xy{{0, 10}}, {0, 4}, information);
+    graph.add_edge(EdgeSe2Xy{{4, 10}}, {0, 5}, information);
+    graph.add_edge(EdgeSe2Xy{{-20, 1}}, {2, 4}, information);
+    graph.add_edge(EdgeSe2Xy{{-20, 1 + apart_m}}, {2, 5}, information);
+    for (const std::string name : {"spanning_tree", "odometry"}) {
+      const InitialValues start = registry.make_start(name, graph);
+      INFO(name << ", " << apart_m << " m: " << start.note);
+      CHECK((start.apart == 0) == (apart_m == 4));
+      graph.set_values(start.values);
+      if (apart_m == 4) CHECK(graph.chi2() < 1e-9);
+    }
+  }
+}
+
 }  // namespace joined_robots_test

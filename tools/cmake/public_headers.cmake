@@ -53,6 +53,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/robust/chi_square.hpp
   core/robust/edge_selection.hpp
   core/robust/graduation.hpp
+  core/robust/joining_edges.hpp
   core/robust/trust.hpp
   core/system/foreign_poses.hpp
   core/system/gauge.hpp

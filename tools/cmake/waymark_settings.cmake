@@ -38,7 +38,8 @@ if(PROJECT_IS_TOP_LEVEL)
   target_compile_options(waymark_settings INTERFACE $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wconversion -Wshadow>)
   # g++ collects garbage whenever its memory has grown by a share; from a GB on, a build takes a tenth less time. Half a GB
   # or its own rule where the jobs that ninja runs at once would not find so much.
-  cmake_host_system_information(RESULT memory_MB QUERY TOTAL_PHYSICAL_MEMORY)
+  include("${CMAKE_CURRENT_LIST_DIR}/available_memory.cmake")
+  waymark_available_memory_MB(memory_MB)
   cmake_host_system_information(RESULT processors QUERY NUMBER_OF_LOGICAL_CORES)
   math(EXPR memory_of_a_job_MB "${memory_MB} / (${processors} + 2)")
   if(memory_of_a_job_MB GREATER 2500)

@@ -11,11 +11,15 @@ namespace waymark::detail {
 /// this side, so that the jump is worth being crossed. A crossing that led nowhere makes the watch more patient.
 class JumpWatch {
  public:
-  /// Hears of a rejected step. @param length of the step @param misfit predicted minus actual decrease of chi2
+  /// Hears of a rejected step. Those before a noticeable progress were rejected elsewhere, and count no more; small steps
+  /// towards the jump may be accepted in between.
+  /// @param length of the step @param misfit predicted minus actual decrease of chi2 @param chi2 before the step
   /// @return whether to take this step, up the jump
-  [[nodiscard]] bool rejected(double length, double misfit) {
-    const bool same = misfit >= kSame * misfit_ && kSame * misfit <= misfit_;
+  [[nodiscard]] bool rejected(double length, double misfit, double chi2) {
+    const bool same =
+        misfit >= kSame * misfit_ && kSame * misfit <= misfit_ && chi2 >= kProgress * chi2_of_first_;
     if (!same) {
+      chi2_of_first_ = chi2;
       count_ = 0;
       length_ = length;
       misfit_ = misfit;
@@ -52,8 +56,9 @@ class JumpWatch {
   static constexpr int kPatience = 3;
   static constexpr int kLongestPatience = 12;
 
-  double length_ = 0;  // of the longest step that met the jump
-  double misfit_ = 0;  // of the longest step
+  double length_ = 0;         // of the longest step that met the jump
+  double misfit_ = 0;         // of the longest step
+  double chi2_of_first_ = 0;  // before the first step that met it
   double last_misfit_ = 0;
   int count_ = 0;  // short steps that met the jump
   int patience_ = kPatience;

@@ -64,6 +64,16 @@ TEST_CASE("drive.yaml: the least there is, and its defaults") {
   CHECK_FALSE(config.settings.estimates_noise.has_value());
 }
 
+TEST_CASE("drive.yaml: an antenna at the body point is stated, and one of which nothing is said is not") {
+  const auto is_stated = [](const std::string& more) {
+    return parse("odometry: {file: o.csv}\ngnss: {file: g.csv" + more + "}\n")
+        .description.gnss[0]
+        .antenna_is_stated;
+  };
+  CHECK(is_stated(", antenna: [0, 0]"));
+  CHECK_FALSE(is_stated(""));
+}
+
 TEST_CASE("drive.yaml: everything that can be said") {
   const DriveFile config = parse(R"(
 name: Somewhere

@@ -124,6 +124,7 @@ GnssConfig read_gnss(const YamlSection& section, std::string name, const DriveDe
   gnss.velocity = read_velocity(section, drive);
   gnss.name = std::move(name);
   section.read("antenna", gnss.antenna_m);
+  gnss.antenna_is_stated = section.has("antenna");
   section.read("period", gnss.period_s, kPeriod);
   if (gnss.period_s > 0 && gnss.period_s < kLeastPeriod) section.fail_value("period", kPeriod.words);
   section.read("delay", gnss.delay_s, kSeconds);

@@ -50,6 +50,7 @@ struct GnssConfig : LogConfig {
   std::optional<LogConfig> velocity{};
   std::string name = "gnss";        ///< of the source
   Eigen::Vector2d antenna_m{0, 0};  ///< body frame (x forward, y left)
+  bool antenna_is_stated = false;   ///< be it at zero
   double delay_s = 0;               ///< how late its stamps are; subtracted
   std::string delay_place{};        ///< "drive.yaml:12:5: " of a stated delay, for messages
   double period_s = 0;              ///< its fixes are thinned to one per period (0: keep all)

@@ -105,7 +105,8 @@ struct PreparedOdometry {
 struct PreparedReceiver {
   std::string name;
   Eigen::Vector2d antenna_m{0, 0};  ///< body frame
-  bool delay_is_stated = false;     ///< which was subtracted
+  bool antenna_is_stated = false;
+  bool delay_is_stated = false;  ///< which was subtracted
 };
 
 /// The pose of the body point at the first node, as it is stated; in the frame.

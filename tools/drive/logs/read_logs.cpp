@@ -13,6 +13,7 @@
 #include <waymark/formats/text/hash.hpp>
 #include <waymark/tools/drive/logs/open_log.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
+#include <waymark/tools/drive/logs/shared_weeks.hpp>
 #include <waymark/tools/drive/sensors/sensor_logs.hpp>
 
 namespace waymark::drive {
@@ -178,6 +179,9 @@ DriveLogs read_drive_logs(const DriveDescription& description, const TypeRegistr
     for (const LogConfig& log : source.logs)
       parts.push_back(one_of_many ? read_log_of_many(log, registry, watch, unheard)
                                   : read_log(log, registry, watch));
+    std::vector<ReadLog> read;
+    for (std::size_t i = 0; i < parts.size(); ++i) read.push_back({&parts[i], &source.logs[i]});
+    share_weeks(read);
   }
   for (const GnssConfig& log : description.gnss) {
     std::string nothing;
@@ -185,6 +189,9 @@ DriveLogs read_drive_logs(const DriveDescription& description, const TypeRegistr
                                                     : read_log(log, registry, watch));
     if (!nothing.empty()) logs.warnings.push_back(fmt::format("{}; {} is left out", nothing, log.name));
     logs.velocity.push_back(log.velocity ? read_log(*log.velocity, registry, watch) : DriveLogs::Log{});
+    if (log.velocity)
+      share_weeks(
+          std::array{ReadLog{&logs.gnss.back(), &log}, ReadLog{&logs.velocity.back(), &*log.velocity}});
   }
   if (description.truth) logs.truth.push_back(read_log(*description.truth, registry, watch));
   for (const SensorConfig& sensor : description.sensors) {

@@ -211,7 +211,11 @@ std::string words_for_late_odometry(double late_s) {
 /// Returns where the antenna is, if nobody has stated it and the drive shows it.
 std::optional<AntennaPlace> antenna_of(const ModeledDrive& modeled, const PreparedDrive& drive,
                                        const TypeRegistry& registry, const std::function<void()>& between) {
-  if (modeled.noise.parameters.empty() || modeled.noise.is_poor_odometry(modeled.placed.odometry_name))
+  const bool is_stated =
+      std::any_of(drive.receivers.begin(), drive.receivers.end(),
+                  [](const PreparedReceiver& receiver) { return receiver.antenna_is_stated; });
+  if (is_stated || modeled.noise.parameters.empty() ||
+      modeled.noise.is_poor_odometry(modeled.placed.odometry_name))
     return std::nullopt;
   return find_antenna_place(modeled.placed, drive.sensors, modeled.settings, registry, between);
 }

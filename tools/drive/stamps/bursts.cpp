@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kFewestBursts = 20;
 constexpr std::size_t kFewestReadings = 3;
+constexpr double kLongestPeriods = 1.5;  // from burst to burst; beyond, those between are missing
 
 /// Rows from `begin` to before `end`.
 struct Burst {
@@ -50,8 +51,10 @@ bool most(const std::vector<Burst>& bursts, std::size_t first, Tell tell) {
   return 10 * count >= 9 * (bursts.size() - first);
 }
 
-/// Tells whether the readings of a column change within bursts as they do between them.
-bool change_within(const SensorTable& rows, std::size_t column, const std::vector<Burst>& bursts) {
+/// Tells whether the readings of a column change within bursts as they do between them. What counts, such as ticks of
+/// wheels, changes by more where bursts are missing.
+bool change_within(const SensorTable& rows, std::size_t column, const std::vector<Burst>& bursts,
+                   double period_s) {
   constexpr double kAddUp = 1.5;
   constexpr double kBetween = 2;
   double inside = 0, across = 0, between = 0;
@@ -66,7 +69,9 @@ bool change_within(const SensorTable& rows, std::size_t column, const std::vecto
     for (std::size_t row = bursts[i].begin + 1; row < bursts[i].end; ++row)
       add(row - 1, row, inside, insides);
     add(bursts[i].begin, bursts[i].end - 1, across, acrosses);
-    if (i > 0) add(bursts[i].begin - 1, bursts[i].begin, between, betweens);
+    if (i > 0 && seconds_between(rows.stamps[bursts[i - 1].begin], rows.stamps[bursts[i].begin]) <
+                     kLongestPeriods * period_s)
+      add(bursts[i].begin - 1, bursts[i].begin, between, betweens);
   }
   if (insides == 0 || acrosses == 0 || betweens == 0) return false;
   inside /= static_cast<double>(insides);
@@ -89,7 +94,6 @@ bool cut_off(const std::vector<Stamp>& stamps, double period_s) {
 /// Spreads the readings of each burst evenly.
 std::vector<Stamp> spread(const std::vector<Stamp>& stamps, const std::vector<Burst>& bursts,
                           const Bursts& found) {
-  constexpr double kLongest = 1.5;  // periods: the packets between are missing
   const auto stamp_of = [&](std::size_t i) {
     return found.are_cut_off ? stamps[bursts[i].begin] : stamps[bursts[i].end - 1];
   };
@@ -99,7 +103,7 @@ std::vector<Stamp> spread(const std::vector<Stamp>& stamps, const std::vector<Bu
     const std::size_t from = found.are_cut_off ? i : i - 1;
     const bool has_neighbour = found.are_cut_off ? i > 0 && i + 1 < bursts.size() : i > 0;
     const double period_s = has_neighbour ? seconds_between(stamp_of(from), stamp_of(from + 1)) : 0;
-    const bool is_whole = period_s > 0 && period_s < kLongest * found.period_s;
+    const bool is_whole = period_s > 0 && period_s < kLongestPeriods * found.period_s;
     const double step_s =
         is_whole ? period_s / static_cast<double>(size) : found.period_s / static_cast<double>(found.size);
     // A log begins within a period, and its first readings are the last ones of it.
@@ -147,7 +151,7 @@ std::optional<Bursts> find_bursts(const SensorTable& rows) {
     return std::nullopt;
   found.are_cut_off = cut_off(stamps, found.period_s);
   for (std::size_t column = 0; column < rows.columns && found.spread.empty(); ++column)
-    if (change_within(rows, column, bursts)) found.spread = spread(stamps, bursts, found);
+    if (change_within(rows, column, bursts, found.period_s)) found.spread = spread(stamps, bursts, found);
   return found;
 }
 

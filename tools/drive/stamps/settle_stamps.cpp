@@ -1,9 +1,11 @@
 #include <waymark/tools/drive/stamps/settle_stamps.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include <waymark/tools/drive/stamps/bursts.hpp>
@@ -58,6 +60,45 @@ SensorTable common_channels(const SensorTable& readings) {
   return table;
 }
 
+/// The steps back of the one clock that the channels of a log have.
+class StepsOfClock {
+ public:
+  /// Tells whether no channel has met a step before. Channels meet it a few intervals of their own apart, and a step is
+  /// more than five of them. @param behind the first stamp behind the step @param back_s its size
+  [[nodiscard]] bool is_new(Stamp behind, double back_s) {
+    const bool is_known = std::any_of(met_.begin(), met_.end(), [&](const Step& other) {
+      const double limit_s = 0.5 * std::min(std::abs(back_s), std::abs(other.back_s));
+      const double apart_s = seconds_between(other.behind, behind);
+      return std::abs(apart_s) < limit_s && std::abs(apart_s + other.back_s - back_s) < limit_s;
+    });
+    if (!is_known) met_.push_back({behind, back_s});
+    return !is_known;
+  }
+
+ private:
+  struct Step {
+    Stamp behind;
+    double back_s = 0;
+  };
+
+  std::vector<Step> met_;
+};
+
+/// Leaves out the rows that have lost readings and hold no others: their stamps lie in the past.
+void leave_out_emptied(SensorTable& readings, const std::vector<char>& has_lost) {
+  SensorTable kept;
+  kept.columns = readings.columns;
+  for (std::size_t row = 0; row < readings.size(); ++row) {
+    const std::span<const double> values(&readings.values[row * readings.columns], readings.columns);
+    const bool is_empty =
+        std::none_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+    if (has_lost[row] != 0 && is_empty) continue;
+    kept.stamps.push_back(readings.stamps[row]);
+    kept.values.insert(kept.values.end(), values.begin(), values.end());
+  }
+  readings = std::move(kept);
+}
+
 }  // namespace
 
 void settle_stamps(std::vector<OdometrySample>& samples, std::size_t first, const std::string& file,
@@ -79,17 +120,20 @@ void settle_stamps(std::vector<OdometrySample>& samples, std::size_t first, cons
 }
 
 void settle_stamps(SensorTable& readings, const std::string& file, PrepareReport& report) {
-  bool is_told = false;
+  StepsOfClock steps;
+  std::vector<char> has_lost(readings.size(), 0);
   for (std::size_t c = 0; c < readings.columns; ++c) {
     const ChannelRows channel = rows_of(readings, c);
     for (const StepBack& step : find_steps_back(channel.table)) {
-      // the channels of a log have one clock
-      if (!std::exchange(is_told, true))
+      if (steps.is_new(channel.table.stamps[step.row], step.back_s))
         report.warnings.push_back(warning_of(step, file, channel.table.size()));
-      for (const std::size_t row : step.in_past)
+      for (const std::size_t row : step.in_past) {
         readings.values[channel.rows[row] * readings.columns + c] = std::numeric_limits<double>::quiet_NaN();
+        has_lost[channel.rows[row]] = 1;
+      }
     }
   }
+  leave_out_emptied(readings, has_lost);
   const auto common = common_channels(readings);
   if (common.columns == 0) return;  // frames of several channels one after another are no bursts
   const std::optional<Bursts> bursts = find_bursts(common);

@@ -17,7 +17,8 @@ inline constexpr int kWorldBody =
 
 /// Moves whole bodies so that the points they share come together: each body to where its points are known
 /// already, the one with the most such points first. Where none belongs to the world, the body with the lowest
-/// number stays. A body with fewer than two such points stays too.
+/// number stays. A body with fewer than two such points, or of which no two are as
+/// far apart as it sees them (rigid_alignment.hpp), stays too.
 /// @param bodies per vertex: the number of its body
 /// @param values in the layout of Graph::values(); poses are moved, points are not
 /// @return per vertex, not zero: it is a pose that was moved

@@ -13,6 +13,9 @@ namespace {
 constexpr std::size_t kProposals = 200;
 /// Points nearer to each other than this share of the whole extent say nothing about the turn.
 constexpr double kApart = 1e-6;
+/// A motion keeps distances: two pairs whose points are not equally far apart, but for this share, are not both right.
+/// Without that, any two pairs would fit.
+constexpr double kSameDistance = 0.1;
 
 double distance(const Pose2<double>& motion, const PointPair& pair) {
   return (moved(motion, pair.from) - pair.to).norm();
@@ -59,7 +62,9 @@ std::optional<Pose2<double>> best_proposal(std::span<const PointPair> pairs) {
   std::optional<Pose2<double>> best;
   double best_misfit = std::numeric_limits<double>::infinity();
   const auto propose = [&](const PointPair& a, const PointPair& b) {
-    if (!((b.from - a.from).norm() > least) || !((b.to - a.to).norm() > 0)) return;
+    const double from = (b.from - a.from).norm();
+    const double to = (b.to - a.to).norm();
+    if (!(from > least) || !(to > 0) || std::abs(from - to) > kSameDistance * std::max(from, to)) return;
     const Pose2<double> motion = aligned(std::array{a, b}, std::array{1.0, 1.0});
     const double sum = misfit(pairs, motion);
     if (!(sum < best_misfit)) return;

@@ -119,6 +119,18 @@ TEST_CASE("antenna: nothing is said where it is at the point of the odometry, or
   CHECK_FALSE(find_antenna_place(modeled.placed, {}, modeled.settings, registry()));
 }
 
+TEST_CASE("antenna: none is told at the bound of the search, beyond which the place may be") {
+  const ModeledDrive modeled = fuse(bends(0, 0, nullptr, {12, 0.4}), {}, registry()).model;
+  CHECK_FALSE(find_antenna_place(modeled.placed, {}, modeled.settings, registry()));
+}
+
+TEST_CASE("antenna: one that is stated to be at the point of the odometry is believed to be there") {
+  PreparedDrive drive = bends(0, 0, nullptr, {1.5, 0.4});
+  drive.receivers.front().antenna_is_stated = true;
+  for (const std::string& warning : fuse(drive, {}, registry()).model.warnings())
+    CHECK_THAT(warning, !Catch::Contains("state 'antenna: ["));
+}
+
 TEST_CASE("clock drift: poses are at the times of the fixes, and the drift is told") {
   for (const double drift : {60e-6, -100e-6}) {  // 18 and 30 ms in all: 0.2 and 0.4 m at 12 m/s
     std::vector<Eigen::Vector2d> truth;

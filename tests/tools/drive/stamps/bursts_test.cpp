@@ -109,10 +109,12 @@ TEST_CASE("stamps: a regular clock, a trembling one and one of few digits are no
   CHECK(settled(silent).warnings.empty());
 }
 
-TEST_CASE("stamps: a table of ticks in packets is spread, too") {
+namespace {
+
+/// Counts the ticks of two wheels.
+SensorTable ticks_of(const std::vector<OdometrySample>& samples) {
   SensorTable table;
   table.columns = 3;
-  const std::vector<OdometrySample> samples = logged([](double t) { return std::floor(t); });
   double left = 0, right = 0;
   for (const OdometrySample& sample : samples) {
     left = std::round(left + 50 * sample.speed_mps);
@@ -120,10 +122,29 @@ TEST_CASE("stamps: a table of ticks in packets is spread, too") {
     table.stamps.push_back(sample.stamp);
     table.values.insert(table.values.end(), {left, NAN, right});
   }
+  return table;
+}
+
+}  // namespace
+
+TEST_CASE("stamps: a table of ticks in packets is spread, too") {
+  SensorTable table = ticks_of(logged([](double t) { return std::floor(t); }));
   PrepareReport report;
   settle_stamps(table, "odo.csv", report);
   CHECK(report.warnings.size() == 1);
   CHECK(table.stamps[437].seconds() == Approx(43.7));
+}
+
+TEST_CASE("stamps: a table in packets is spread where its clock stepped back, too") {
+  SensorTable table =
+      ticks_of(logged([](double t) { return std::floor(t) - (t > 59.99 && t < 69.99 ? 30 : 0); }));
+  const std::size_t rows = table.size();
+  PrepareReport report;
+  settle_stamps(table, "odo.csv", report);
+  CHECK(report.warnings.size() == 2);
+  REQUIRE(table.size() == rows - 100);  // 10 s of 10 Hz
+  CHECK(table.stamps[437].seconds() == Approx(43.7));
+  CHECK(table.stamps[637].seconds() == Approx(73.7));
 }
 
 }  // namespace bursts_test

@@ -113,8 +113,26 @@ TEST_CASE("stamps: each channel of a table has a past of its own") {
   settle_stamps(table, "odo.csv", report);
   REQUIRE(report.warnings.size() == 1);
   CHECK_THAT(report.warnings[0], Catch::Contains("the 100 readings of 9.9 s"));
-  for (std::size_t row = 2002; row < table.size(); ++row) CHECK(std::isnan(table.at(row, 0)));
+  CHECK(table.size() == 2002);
   for (std::size_t row = 0; row <= 1000; ++row) CHECK(table.at(row, 0) == before[2 * row]);
+}
+
+TEST_CASE("stamps: each step of the clock of a table is told, and each once for all channels") {
+  SensorTable table;
+  table.columns = 2;
+  for (int i = 0; i <= 6000; ++i) {
+    const double t = 0.05 * i;
+    const double steps_s = t > 100.01 && t < 110 ? 20 : t > 199.99 && t < 220 ? 70.017 : 0;
+    table.stamps.push_back(Stamp::from_seconds(t - steps_s));
+    const bool is_speed = i % 2 == 0;  // the channels take turns
+    table.values.insert(table.values.end(), {is_speed ? speed_at(t) : NAN, is_speed ? NAN : 0.01 * t});
+  }
+  PrepareReport report;
+  settle_stamps(table, "odo.csv", report);
+  REQUIRE(report.warnings.size() == 2);
+  CHECK_THAT(report.warnings[0], Catch::Contains("steps back by 19.9"));
+  CHECK_THAT(report.warnings[1], Catch::Contains("steps back by 69.9"));
+  CHECK(table.size() == 6001 - 199 - 400);  // those of 10 s and 20 s
 }
 
 }  // namespace steps_back_test
