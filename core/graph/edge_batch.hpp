@@ -144,9 +144,6 @@ class EdgeBatchBase {
   /// loss. It is for checks and tests.
   virtual void linearize_edge(std::size_t edge, const ValueView& view, Eigen::VectorXd& error,
                               std::vector<Eigen::MatrixXd>& jacobians) const = 0;
-  /// Computes the same with dual numbers, even if the type has its own linearize(...).
-  virtual void differentiate_edge(std::size_t edge, const ValueView& view, Eigen::VectorXd& error,
-                                  std::vector<Eigen::MatrixXd>& jacobians) const = 0;
   /// Adds (sum_k J_k T_k)^T Omega (sum_k J_k T_k) to the component of each edge. T_k are the rigid
   /// motions of its vertices (Vertex: rigid_motion).
   virtual void add_rigid_information(const ValueView& view, const RigidMotionView& motion) const = 0;

@@ -147,11 +147,6 @@ void GaussianPriorBatch::linearize_edge(std::size_t i, const ValueView& view, Ei
   }
 }
 
-void GaussianPriorBatch::differentiate_edge(std::size_t i, const ValueView& view, Eigen::VectorXd& e,
-                                            std::vector<Eigen::MatrixXd>& jacobians) const {
-  linearize_edge(i, view, e, jacobians);
-}
-
 void GaussianPriorBatch::add_rigid_information(const ValueView& view, const RigidMotionView& motion) const {
   Eigen::VectorXd e;
   std::vector<Eigen::MatrixXd> jacobians;

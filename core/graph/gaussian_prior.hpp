@@ -34,8 +34,6 @@ class GaussianPriorBatch final : public EdgeBatchBase {
                    const NormalView& normal) const override;
   void linearize_edge(std::size_t i, const ValueView& view, Eigen::VectorXd& error,
                       std::vector<Eigen::MatrixXd>& jacobians) const override;
-  void differentiate_edge(std::size_t i, const ValueView& view, Eigen::VectorXd& error,
-                          std::vector<Eigen::MatrixXd>& jacobians) const override;
   void add_rigid_information(const ValueView& view, const RigidMotionView& motion) const override;
 
  private:

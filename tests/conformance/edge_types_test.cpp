@@ -1,5 +1,4 @@
-// Every registered edge type: its Jacobians against dual numbers and against differences, finite at
-// extremes.
+// Every registered edge type: its Jacobians against differences, finite at extremes.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -18,10 +17,6 @@ namespace {
 
 constexpr double kHalfTurn = std::numbers::pi;
 
-double magnitude(const Eigen::MatrixXd& m) {
-  return 1 + (m.size() > 0 ? m.cwiseAbs().maxCoeff() : 0);
-}
-
 template <typename Visit>
 void for_each_case(const TypeRegistry& registry, int repetitions, Visit visit) {
   for (const auto& [type, origin] : registry.edges()) {
@@ -34,23 +29,6 @@ void for_each_case(const TypeRegistry& registry, int repetitions, Visit visit) {
 }
 
 }  // namespace
-
-TEST_CASE("every edge type: given Jacobians are those of dual numbers") {
-  for_each_case(waymark_test::full_registry(), 50, [](const Graph& graph) {
-    Eigen::VectorXd given_error;
-    Eigen::VectorXd dual_error;
-    std::vector<Eigen::MatrixXd> given;
-    std::vector<Eigen::MatrixXd> dual;
-    graph.batch(0).linearize_edge(0, graph.view(), given_error, given);
-    graph.batch(0).differentiate_edge(0, graph.view(), dual_error, dual);
-    REQUIRE(given.size() == dual.size());
-    CHECK((given_error - dual_error).norm() <=
-          1e-12 * magnitude(graph.batch(0).information(0)) * magnitude(dual_error));
-    for (std::size_t k = 0; k < given.size(); ++k) {
-      CHECK((given[k] - dual[k]).cwiseAbs().maxCoeff() <= 1e-12 * magnitude(dual[k]));
-    }
-  });
-}
 
 TEST_CASE("every edge type: given Jacobians are those of differences of the error") {
   int cases = 0;

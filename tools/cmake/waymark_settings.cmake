@@ -108,14 +108,14 @@ function(waymark_cold target)
   target_precompile_headers(${target} REUSE_FROM waymark_precompiled)
 endfunction()
 
-# waymark_library(NAME [SHARED] [HOT] [WITHOUT FOLDERS...]): a library of every *.cpp below the calling CMakeLists.txt, but
-# for those in the folders given, with the shared settings and the alias waymark::NAME. HOT: it has inner loops. The others
+# waymark_library(NAME [SHARED] [HOT] [WITHOUT PATHS...]): a library of every *.cpp below the calling CMakeLists.txt, but
+# for the folders and files given, with the shared settings and the alias waymark::NAME. HOT: it has inner loops. The others
 # are cold.
 function(waymark_library name)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "SHARED;HOT" "" "WITHOUT")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}" *.cpp)
-  foreach(folder ${ARG_WITHOUT})
-    list(FILTER sources EXCLUDE REGEX "^${folder}/")
+  foreach(path ${ARG_WITHOUT})
+    list(FILTER sources EXCLUDE REGEX "^${path}(/|$)")
   endforeach()
   if(ARG_SHARED)
     add_library(waymark_${name} SHARED ${sources})

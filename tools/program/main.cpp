@@ -105,9 +105,9 @@ ExitCode run(int argc, char** argv) {
 /// Keeps the memory of arrays that are freed. A search builds a graph hundreds of times, and pages that the
 /// system takes back and clears anew cost a tenth of its time.
 void keep_freed_memory() {
-  constexpr int kMegabyte = 1 << 20;
-  (void)::mallopt(M_MMAP_THRESHOLD, 64 * kMegabyte);
-  (void)::mallopt(M_TRIM_THRESHOLD, 256 * kMegabyte);
+  constexpr int kMebibyte = 1 << 20;
+  (void)::mallopt(M_MMAP_THRESHOLD, 64 * kMebibyte);
+  (void)::mallopt(M_TRIM_THRESHOLD, 256 * kMebibyte);
 }
 
 }  // namespace

@@ -121,17 +121,6 @@ class EdgeBatch final : public EdgeBatchBase {
     to_dynamic(jacobians, out);
   }
 
-  void differentiate_edge(std::size_t i, const ValueView& view, Eigen::VectorXd& e,
-                          std::vector<Eigen::MatrixXd>& out) const override {
-    ErrorVector<kDimension> fixed;
-    Jacobians jacobians;
-    this->named(E::kTag, view, one_edge(i), [&] {
-      differentiate(records_[i], view, fixed, jacobians, std::make_index_sequence<kArity>());
-    });
-    e = fixed;
-    to_dynamic(jacobians, out);
-  }
-
   void add_rigid_information(const ValueView& view, const RigidMotionView& motion) const override {
     for (const Record& record : records_) {
       if (is_blind(record, motion)) continue;

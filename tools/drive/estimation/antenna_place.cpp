@@ -16,9 +16,9 @@ namespace waymark::drive {
 namespace {
 
 /// An antenna ahead and to the left, m, and a delay of the fixes, s.
-using Unknowns = Eigen::Vector3d;
+using PlaceAndDelay = Eigen::Vector3d;
 
-double cost_at(const Unknowns& at, TrialDrive& trial) {
+double cost_at(const PlaceAndDelay& at, TrialDrive& trial) {
   return trial.cost_with([&](PlacedDrive& drive) {
     for (std::size_t i = 0; i < drive.fixes.size(); ++i) {
       drive.fixes[i].antenna_m += at.head<2>();
@@ -28,7 +28,7 @@ double cost_at(const Unknowns& at, TrialDrive& trial) {
 }
 
 struct Minimum {
-  Unknowns at = Unknowns::Zero();
+  PlaceAndDelay at = PlaceAndDelay::Zero();
   double cost = 0;
 };
 
@@ -41,7 +41,7 @@ double cost_of_place(unsigned, const double* at, double*, void* data) {
   PlaceSearch& search = *static_cast<PlaceSearch*>(data);
   if (search.thrown) return std::numeric_limits<double>::max();
   try {
-    const double cost = cost_at(Eigen::Map<const Unknowns>(at), search.trial);
+    const double cost = cost_at(Eigen::Map<const PlaceAndDelay>(at), search.trial);
     return std::isfinite(cost) ? cost : std::numeric_limits<double>::max();
   } catch (...) {
     search.thrown = std::current_exception();
@@ -51,11 +51,11 @@ double cost_of_place(unsigned, const double* at, double*, void* data) {
 
 /// Finds the least cost without derivatives (BOBYQA, Powell 2009): far from it the errors of precise fixes cost the
 /// same wherever the antenna is.
-Minimum least_of(const Unknowns& bounds, TrialDrive& trial) {
+Minimum least_of(const PlaceAndDelay& bounds, TrialDrive& trial) {
   constexpr int kMostEvaluations = 60;
-  const Unknowns low = -bounds;
-  const Unknowns first(0.5, 0.5, 0.05);
-  const Unknowns near(0.01, 0.01, 0.001);
+  const PlaceAndDelay low = -bounds;
+  const PlaceAndDelay first(0.5, 0.5, 0.05);
+  const PlaceAndDelay near(0.01, 0.01, 0.001);
   Minimum least;
   PlaceSearch search{trial};
   nlopt_opt bobyqa = nlopt_create(NLOPT_LN_BOBYQA, 3);
@@ -72,18 +72,19 @@ Minimum least_of(const Unknowns& bounds, TrialDrive& trial) {
 }
 
 /// Returns the second derivatives of the cost by central differences.
-Eigen::Matrix3d curvature_at(const Minimum& minimum, const Unknowns& steps, TrialDrive& trial) {
+Eigen::Matrix3d curvature_at(const Minimum& minimum, const PlaceAndDelay& steps, TrialDrive& trial) {
   const auto& [at, here] = minimum;
   Eigen::Matrix3d curvature;
   Eigen::Vector3d after;
   for (int i = 0; i < 3; ++i) {
-    const Unknowns step = steps[i] * Unknowns::Unit(i);
+    const PlaceAndDelay step = steps[i] * PlaceAndDelay::Unit(i);
     after[i] = cost_at(at + step, trial);
     curvature(i, i) = (cost_at(at - step, trial) - 2 * here + after[i]) / (steps[i] * steps[i]);
   }
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < i; ++j) {
-      const double both = cost_at(at + steps[i] * Unknowns::Unit(i) + steps[j] * Unknowns::Unit(j), trial);
+      const double both =
+          cost_at(at + steps[i] * PlaceAndDelay::Unit(i) + steps[j] * PlaceAndDelay::Unit(j), trial);
       // Each step alone costs its slope and half its curvature; what is left over both is the product of them.
       const double cross = (both - after[i] - after[j] + here) / (steps[i] * steps[j]);
       curvature(i, j) = curvature(j, i) = cross;
@@ -93,7 +94,7 @@ Eigen::Matrix3d curvature_at(const Minimum& minimum, const Unknowns& steps, Tria
 }
 
 /// Returns steps of a fraction of the accuracy of the fixes.
-Unknowns steps_of(const PlacedDrive& drive) {
+PlaceAndDelay steps_of(const PlacedDrive& drive) {
   constexpr double kUsualSpeed_mps = 10;
   std::vector<double> accuracies;
   for (const Fix& fix : drive.fixes) accuracies.push_back(fix.accuracy_m());
@@ -125,8 +126,8 @@ std::optional<AntennaPlace> find_antenna_place(const PlacedDrive& placed,
   if (!may_be_found(placed, settings)) return std::nullopt;
   TrialDrive trial(sample_of(coarsen(placed, sensors, kFixPeriod_s, kNodePeriod_s), kWindows, kWindow_s),
                    settings, registry, between);
-  const double unmoved = cost_at(Unknowns::Zero(), trial);
-  const Unknowns bounds(kFarthest_m, kFarthest_m, kLatest_s);
+  const double unmoved = cost_at(PlaceAndDelay::Zero(), trial);
+  const PlaceAndDelay bounds(kFarthest_m, kFarthest_m, kLatest_s);
   const Minimum least = least_of(bounds, trial);
   const bool is_inside = (least.at.cwiseAbs().array() < 0.9 * bounds.array()).all();
   const double spread = trial.spread(least.cost);

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
+#include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::drive {
@@ -60,13 +60,12 @@ std::vector<PoseSpread> spread_over_noise(NoiseObjective& objective, const Noise
   std::vector<PoseSpread> spread;
   spread.reserve(here.size());
   for (const PoseBelief& belief : here) spread.push_back({belief.stamp, Matrix3d::Zero()});
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(covariance);
+  const SymmetricEigen axes = symmetric_eigen(covariance);
   const Eigen::VectorXd at = coordinates_of(noise);
   const Eigen::VectorXd unit = prior_deviations(noise);
   NoiseEstimate moved = noise;
   for (Eigen::Index axis = 0; axis < at.size(); ++axis) {
-    const Eigen::VectorXd deviation =
-        std::sqrt(std::max(0.0, axes.eigenvalues()[axis])) * axes.eigenvectors().col(axis);
+    const Eigen::VectorXd deviation = std::sqrt(std::max(0.0, axes.values[axis])) * axes.vectors.col(axis);
     if (deviation.cwiseProduct(unit).norm() < kKnown) continue;
     for (const double side : {-kPoint, kPoint}) {
       place_at(at + side * deviation, moved);

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include <Eigen/Eigenvalues>
-
+#include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/tools/drive/estimation/noise_objective.hpp>
 
 namespace waymark::live {
@@ -17,15 +16,15 @@ drive::NoiseEstimate noise_ahead(drive::NoiseEstimate noise, double length_s) {
   if (size == 0 || noise.curvature.rows() != size) return noise;
   const double most = length_s / 60 / kVariance;
   const Eigen::MatrixXd told = noise.curvature - Eigen::MatrixXd::Identity(size, size);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(0.5 * (told + told.transpose()));
-  Eigen::VectorXd along = axes.eigenvectors().transpose() * drive::coordinates_of(noise);
+  const SymmetricEigen axes = symmetric_eigen(0.5 * (told + told.transpose()));
+  Eigen::VectorXd along = axes.vectors.transpose() * drive::coordinates_of(noise);
   for (Eigen::Index i = 0; i < size; ++i) {
-    const double information = std::max(0.0, axes.eigenvalues()[i]);
+    const double information = std::max(0.0, axes.values[i]);
     const double less = information * most / (information + most);
     along[i] *= (1 + information) / (1 + less) * most / (information + most);
   }
   const Eigen::VectorXd told_by_all = drive::coordinates_of(noise);
-  Eigen::VectorXd at = axes.eigenvectors() * along;
+  Eigen::VectorXd at = axes.vectors * along;
   for (Eigen::Index i = 0; i < size; ++i)
     if (!noise.parameters[static_cast<std::size_t>(i)].prior.linear) at[i] = std::max(at[i], told_by_all[i]);
   drive::place_at(at, noise);

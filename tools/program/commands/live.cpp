@@ -120,7 +120,7 @@ nlohmann::ordered_json json_of(const live::LatencyHistogram& histogram) {
           {"max_us", histogram.largest_us()}};
 }
 
-nlohmann::ordered_json summary_of(const live::Session& session) {
+nlohmann::ordered_json session_json(const live::Session& session) {
   const live::Counts& counts = session.estimator().counts();
   nlohmann::ordered_json json{{"state", to_string(session.estimator().state())},
                               {"taken", counts.taken},
@@ -217,7 +217,7 @@ ExitCode run(const LiveCommand& command) {
     return output.ends_with(":-") || output.find(":-?") != std::string::npos;
   });
   if (command.common.json && !stdout_taken) {
-    console.result(json_document("live", summary_of(session)));
+    console.result(json_document("live", session_json(session)));
   } else {
     print_summary(session, console);
   }

@@ -280,18 +280,6 @@ void PythonEdgeBatch::linearize_edge(std::size_t edge, const ValueView& view, Ei
     jacobians_of_edge.push_back(std::move(of_vertex.front()));
 }
 
-void PythonEdgeBatch::differentiate_edge(std::size_t edge, const ValueView& view, Eigen::VectorXd& error,
-                                         std::vector<Eigen::MatrixXd>& jacobians_of_edge) const {
-  const py::gil_scoped_acquire acquire;
-  const EdgeRange range{static_cast<std::uint32_t>(edge), static_cast<std::uint32_t>(edge + 1)};
-  const Values at = values(view, range);
-  const Rows here = errors(at, range);
-  error = here.row(0).transpose();
-  jacobians_of_edge.clear();
-  for (std::vector<Eigen::MatrixXd>& of_vertex : differences(at, here, range))
-    jacobians_of_edge.push_back(std::move(of_vertex.front()));
-}
-
 void PythonEdgeBatch::add_rigid_information(const ValueView& view, const RigidMotionView& motion) const {
   if (size() == 0) return;
   const py::gil_scoped_acquire acquire;

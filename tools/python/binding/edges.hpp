@@ -64,8 +64,6 @@ class PythonEdgeBatch final : public EdgeBatchBase {
                    const NormalView& normal) const override;
   void linearize_edge(std::size_t edge, const ValueView& view, Eigen::VectorXd& error,
                       std::vector<Eigen::MatrixXd>& jacobians) const override;
-  void differentiate_edge(std::size_t edge, const ValueView& view, Eigen::VectorXd& error,
-                          std::vector<Eigen::MatrixXd>& jacobians) const override;
   void add_rigid_information(const ValueView& view, const RigidMotionView& motion) const override;
 
  private:

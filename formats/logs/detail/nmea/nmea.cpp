@@ -10,6 +10,7 @@
 
 #include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/common/kind_tally.hpp>
 #include <waymark/formats/logs/detail/common/line_decoder.hpp>
 #include <waymark/formats/logs/detail/common/log_request.hpp>
@@ -21,7 +22,6 @@
 namespace waymark::formats {
 namespace {
 
-constexpr std::int64_t kDayNanoseconds = 86'400'000'000'000;
 constexpr std::size_t kMostUndated = 4096;  ///< fixes that wait for the first date
 
 class NmeaDecoder final : public LineDecoder {
