@@ -42,13 +42,13 @@ bool convex_at(const Loss& loss, double squared) {
   return value.weight > 0 && value.weight + 2 * squared * value.curvature >= -1e-9 * value.weight;
 }
 
-/// Returns how many operations a factorisation of the normal equations takes.
+/// Returns how many operations the dense part of a factorisation of the normal equations takes.
 double factorization_operations(const Graph& graph) {
   Structure structure;
   structure.build(graph, find_gauge(graph, PartlyAnchored::hold_vertex).held);
   double sum = 0;
   for (const Supernode& node : analyze_blocks(structure.pattern()).nodes) {
-    if (node.links > 0) continue;  // linear
+    if (node.links > 0) continue;
     const double height = node.columns + node.below;
     sum += node.columns * height * height;
   }
@@ -83,6 +83,7 @@ class Graduation {
   std::vector<EdgePlace> kept_and_trusted() const;
   bool doubt_trusted();
   bool is_dense() const;
+  bool may_be_grown(const Graph& trusted) const;
   bool is_implausible() const;
   bool has_many_outliers() const;
   double bound(EdgePlace place) const;
@@ -114,7 +115,7 @@ class Graduation {
   std::vector<std::vector<EdgePlace>> parallels_;  // groups of candidates that would be trusted alone
   std::vector<std::vector<EdgePlace>> judged_;     // splits whose minimum is known
   Verdict best_;
-  bool dense_ = false;  // together all edges fill the factor, so that they are never used together
+  bool dense_ = false;  // all edges together would take too long
   bool interrupted_ = false;
   GraduationResult result_;
 };
@@ -222,18 +223,25 @@ template <typename Search>
 void Graduation::apart(Search search) {
   Verdict others = std::exchange(best_, {});
   search();
-  if (others.cost <= best_.cost) best_ = std::move(others);
+  if (!(best_.cost < others.cost)) best_ = std::move(others);
 }
 
-// False closures join places anywhere, and fill the factor of a large graph as right ones do not.
+// Tells whether all edges fill the factor so much that each step would take minutes. False closures do, because they join
+// places anywhere; right ones on a million street corners would not.
 bool Graduation::is_dense() const {
-  constexpr double kManyOperations = 2e10;  // seconds
-  constexpr double kTimesOfTrusted = 100;
-  const double all = factorization_operations(graph_);
-  if (all < kManyOperations) return false;
+  constexpr double kManyOperations = 1e12;
+  if (factorization_operations(graph_) < kManyOperations) return false;
   const Graph trusted = without_edges(graph_, candidates_);
-  return joining_edges(graph_, candidates_, trusted).empty() &&
-         all > kTimesOfTrusted * factorization_operations(trusted);
+  return joining_edges(graph_, candidates_, trusted).empty() && may_be_grown(trusted);
+}
+
+// Tells whether trusted edges place what they join, or nothing else says where that is.
+bool Graduation::may_be_grown(const Graph& trusted) const {
+  const std::vector<char> held = find_gauge(trusted, PartlyAnchored::hold_vertex).held;
+  if (std::none_of(held.begin(), held.end(), [](char mark) { return mark != 0; })) return true;
+  return std::all_of(candidates_.begin(), candidates_.end(), [&](EdgePlace place) {
+    return graph_.batch(place.batch).vertices(place.edge).size() > 1;
+  });
 }
 
 bool Graduation::has_many_outliers() const {
@@ -248,15 +256,18 @@ std::vector<EdgePlace> Graduation::grown_from(std::vector<EdgePlace> out) {
   constexpr std::size_t kShare = 10;
   constexpr double kTogether = 2;  // of the looseness, between the first and the last that return at a time
   std::vector<EdgePlace> refused;  // had returned, and were contradicted by others
-  for (int split = 0; split < kMaxSplits && !interrupted_; ++split) {
+  for (int split = 0; split < kMaxSplits; ++split) {
     Verdict verdict;
     try {
       verdict = optimize_without(out);
     } catch (const InputError&) {
-      break;  // what is trusted determines no solution
+      break;  // the remaining edges determine no solution
     }
+    if (interrupted_) break;
+    if (verdict.cost < best_.cost) best_ = verdict;
     const Graph kept = without_edges(graph_, verdict.outliers);
-    if (split == 0 && !joining(verdict, kept).empty()) break;  // the innovations would take parts for known
+    // The innovations would take parts for known that nothing places.
+    if (split == 0 && !(joining(verdict, kept).empty() && may_be_grown(kept))) break;
     const std::vector<Innovation> innovation =
         innovations(graph_, verdict.outliers, Membership::outside, kept);
     std::vector<std::pair<double, EdgePlace>> agreeing;
@@ -393,7 +404,7 @@ void Graduation::judge(std::vector<EdgePlace> outliers) {
 }
 
 // Finds edges that bend the rest without a large error of their own. This is done only for the best
-// split, because it takes a solve per candidate and dimension.
+// split, because it takes an innovation per candidate.
 void Graduation::cross_examine() {
   constexpr int kMaxRounds = 20;
   for (int round = 0; round < kMaxRounds && !interrupted_ && !best_.values.empty(); ++round) {

@@ -100,6 +100,12 @@ class Parts {
   [[nodiscard]] const std::vector<VertexIndex>& members(std::int32_t part) const {
     return members_[at(part)];
   }
+  /// Returns the vertices of one of the parts, the smaller one unless the other has fixed vertices.
+  [[nodiscard]] const std::vector<VertexIndex>& fewer_members(const Join& join) {
+    const bool is_moved =
+        sets_.of(fixed_) == join.other || members(join.moved).size() <= members(join.other).size();
+    return members(is_moved ? join.moved : join.other);
+  }
 
  private:
   static constexpr int kOfPoses = 3;
@@ -165,10 +171,10 @@ class Rivals {
       }
       const EdgeBatchBase& batch = graph_.batch(place.batch);
       batch.linearize_edge(place.edge, trial_.view(), error, jacobians);
-      sum += std::sqrt(error.dot(batch.information(place.edge) * error));
+      sum += std::sqrt(std::max(0.0, error.dot(batch.information(place.edge) * error)));
       for (std::size_t k = 0; k < moved.size(); ++k) trial_.set_value(moved[k], before[k]);
     }
-    return sum;
+    return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
   }
 
   const Graph& graph_;
@@ -177,6 +183,14 @@ class Rivals {
   const Parts::Join join_;
   std::vector<EdgePlace> edges_;
 };
+
+std::vector<std::vector<std::size_t>> edges_by_vertex(const Graph& graph, std::span<const EdgePlace> edges) {
+  std::vector<std::vector<std::size_t>> result(graph.vertex_count());
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    for (const VertexIndex v : graph.batch(edges[i].batch).vertices(edges[i].edge))
+      result[at(v)].push_back(i);
+  return result;
+}
 
 }  // namespace
 
@@ -189,13 +203,21 @@ std::vector<EdgePlace> joining_edges(const Graph& graph, std::span<const EdgePla
     return parts.join_by(batch.vertices(place.edge), batch.error_dimension(place.edge));
   };
   std::vector<EdgePlace> result;
+  std::vector<std::vector<std::size_t>> edges_of;  // of each vertex
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const std::optional<Parts::Join> join = join_by(edges[i]);
     if (!join) continue;
-    if (!trial) trial = kept;
+    if (!trial) {
+      trial = kept;
+      edges_of = edges_by_vertex(graph, edges);
+    }
+    std::vector<std::size_t> rival;
+    for (const VertexIndex v : parts.fewer_members(*join))
+      for (const std::size_t k : edges_of[at(v)])
+        if (join_by(edges[k]) == join) rival.push_back(k);
+    std::sort(rival.begin(), rival.end());
     Rivals rivals(graph, *trial, parts, *join);
-    for (std::size_t k = i; k < edges.size(); ++k)
-      if (join_by(edges[k]) == join) rivals.add(edges[k]);
+    for (const std::size_t k : rival) rivals.add(edges[k]);
     const auto [best, motion] = rivals.best();
     if (motion)
       for (const VertexIndex v : parts.members(join->moved)) detail::move(*trial, v, *motion);

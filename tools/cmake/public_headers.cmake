@@ -38,6 +38,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/linear/block_pattern.hpp
   core/linear/block_symbolic.hpp
   core/linear/dense_decompositions.hpp
+  core/linear/inverse_form.hpp
   core/linear/linear_solver.hpp
   core/optimize/algorithm.hpp
   core/optimize/multi_start.hpp

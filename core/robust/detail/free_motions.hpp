@@ -20,7 +20,6 @@ class FreeMotions {
 
   /// Returns how many there are if nothing anchors the part, else 0.
   [[nodiscard]] int unanchored() const { return unanchored_; }
-  [[nodiscard]] bool none() const { return unanchored_ == 0 && some_.cols() == 0; }
   /// Tells whether two parts that are anchored, wholly or in part, have all rigid motions between them.
   [[nodiscard]] bool make_all_with(const FreeMotions& other) const;
   /// Returns those that two parts share, both anchored wholly or in part.

@@ -70,4 +70,13 @@ TEST_CASE("shared weeks: files of one week, of weeks that are stated each, and d
   CHECK(dates[1].begin_s() == 1'300'000'000);
 }
 
+TEST_CASE("shared weeks: a file that overlaps another one as it is stays, however long before it begins") {
+  std::vector<File> files{{"wheels.csv", 86'400, 2314}, {"gyro.csv", 450'000, 2314}};
+  for (int i = 0; i < 100; ++i)
+    files[0].log.data.readings.stamps.push_back({(2314 * kWeek_s + 450'000 + i) * 1'000'000'000});
+  share(files);
+  CHECK(files[0].begin_s() == 2314 * kWeek_s + 86'400);
+  CHECK(files[1].begin_s() == 2314 * kWeek_s + 450'000);
+}
+
 }  // namespace shared_weeks_test

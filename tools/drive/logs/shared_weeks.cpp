@@ -40,6 +40,17 @@ std::optional<std::int64_t> begin_of_week_time(const ReadLog& read) {
   return is_of_week ? std::optional(begin) : std::nullopt;
 }
 
+/// Returns the time between the first and the last stamp, ns.
+std::int64_t duration(const ReadLog& read) {
+  std::optional<Stamp> first;
+  Stamp last;
+  each_stamp(read.log->data, [&](Stamp stamp) {
+    if (!first) first = stamp;
+    last = std::max(last, stamp);
+  });
+  return first ? last.nanoseconds - first->nanoseconds : 0;
+}
+
 }  // namespace
 
 void share_weeks(std::span<const ReadLog> logs) {
@@ -56,6 +67,7 @@ void share_weeks(std::span<const ReadLog> logs) {
     if (read.config->request.gps_week != late->config->request.gps_week) continue;
     const auto begin = begin_of_week_time(read);
     if (!begin || *latest - *begin <= kGpsWeekNanoseconds / 2) continue;
+    if (*begin + duration(read) > *latest) continue;  // it overlaps the late one as it is
     each_stamp(read.log->data, [](Stamp& stamp) { stamp.nanoseconds += kGpsWeekNanoseconds; });
     read.log->data.notes.push_back(fmt::format(
         "{}: its times of the week begin after the end of the week in which {} begins; a week is added to "

@@ -63,20 +63,22 @@ SensorTable common_channels(const SensorTable& readings) {
 /// The steps back of the one clock that the channels of a log have.
 class StepsOfClock {
  public:
-  /// Tells whether no channel has met a step before. Channels meet it a few intervals of their own apart, and a step is
+  /// Tells whether no other channel has met a step before. Channels meet it a few intervals of their own apart, and a step is
   /// more than five of them. @param behind the first stamp behind the step @param back_s its size
-  [[nodiscard]] bool is_new(Stamp behind, double back_s) {
+  [[nodiscard]] bool is_new(std::size_t channel, Stamp behind, double back_s) {
     const bool is_known = std::any_of(met_.begin(), met_.end(), [&](const Step& other) {
+      if (other.channel == channel) return false;
       const double limit_s = 0.5 * std::min(std::abs(back_s), std::abs(other.back_s));
       const double apart_s = seconds_between(other.behind, behind);
       return std::abs(apart_s) < limit_s && std::abs(apart_s + other.back_s - back_s) < limit_s;
     });
-    if (!is_known) met_.push_back({behind, back_s});
+    if (!is_known) met_.push_back({channel, behind, back_s});
     return !is_known;
   }
 
  private:
   struct Step {
+    std::size_t channel = 0;
     Stamp behind;
     double back_s = 0;
   };
@@ -86,6 +88,7 @@ class StepsOfClock {
 
 /// Leaves out the rows that have lost readings and hold no others: their stamps lie in the past.
 void leave_out_emptied(SensorTable& readings, const std::vector<char>& has_lost) {
+  if (std::none_of(has_lost.begin(), has_lost.end(), [](char lost) { return lost != 0; })) return;
   SensorTable kept;
   kept.columns = readings.columns;
   for (std::size_t row = 0; row < readings.size(); ++row) {
@@ -125,7 +128,7 @@ void settle_stamps(SensorTable& readings, const std::string& file, PrepareReport
   for (std::size_t c = 0; c < readings.columns; ++c) {
     const ChannelRows channel = rows_of(readings, c);
     for (const StepBack& step : find_steps_back(channel.table)) {
-      if (steps.is_new(channel.table.stamps[step.row], step.back_s))
+      if (steps.is_new(c, channel.table.stamps[step.row], step.back_s))
         report.warnings.push_back(warning_of(step, file, channel.table.size()));
       for (const std::size_t row : step.in_past) {
         readings.values[channel.rows[row] * readings.columns + c] = std::numeric_limits<double>::quiet_NaN();

@@ -13,9 +13,10 @@ namespace {
 constexpr std::size_t kProposals = 200;
 /// Points nearer to each other than this share of the whole extent say nothing about the turn.
 constexpr double kApart = 1e-6;
-/// A motion keeps distances: two pairs whose points are not equally far apart, but for this share, are not both right.
-/// Without that, any two pairs would fit.
+/// A motion keeps distances: two pairs whose points are not equally far apart, but for this share or these metres of noise,
+/// are not both right. Without that, any two pairs would fit.
 constexpr double kSameDistance = 0.1;
+constexpr double kNoise_m = 0.5;
 
 double distance(const Pose2<double>& motion, const PointPair& pair) {
   return (moved(motion, pair.from) - pair.to).norm();
@@ -64,7 +65,9 @@ std::optional<Pose2<double>> best_proposal(std::span<const PointPair> pairs) {
   const auto propose = [&](const PointPair& a, const PointPair& b) {
     const double from = (b.from - a.from).norm();
     const double to = (b.to - a.to).norm();
-    if (!(from > least) || !(to > 0) || std::abs(from - to) > kSameDistance * std::max(from, to)) return;
+    if (!(from > least) || !(to > 0) ||
+        std::abs(from - to) > std::max(kNoise_m, kSameDistance * std::max(from, to)))
+      return;
     const Pose2<double> motion = aligned(std::array{a, b}, std::array{1.0, 1.0});
     const double sum = misfit(pairs, motion);
     if (!(sum < best_misfit)) return;
