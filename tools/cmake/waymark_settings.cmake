@@ -108,11 +108,12 @@ function(waymark_cold target)
   target_precompile_headers(${target} REUSE_FROM waymark_precompiled)
 endfunction()
 
-# waymark_library(NAME [SHARED] [HOT] [WITHOUT PATHS...]): a library of every *.cpp below the calling CMakeLists.txt, but
-# for the folders and files given, with the shared settings and the alias waymark::NAME. HOT: it has inner loops. The others
-# are cold.
+# waymark_library(NAME [SHARED] [HOT] [UNITS COUNT] [WITHOUT PATHS...]): a library of every *.cpp below the calling
+# CMakeLists.txt, but for the folders and files given, with the shared settings and the alias waymark::NAME. HOT: it has inner
+# loops. The others are cold. UNITS: how many sources of about one size a merged build makes of them; every further one
+# compiles the same headers and templates again, for 3 to 10 s.
 function(waymark_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 ARG "SHARED;HOT" "" "WITHOUT")
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "SHARED;HOT" "UNITS" "WITHOUT")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}" *.cpp)
   foreach(path ${ARG_WITHOUT})
     list(FILTER sources EXCLUDE REGEX "^${path}(/|$)")
@@ -124,6 +125,11 @@ function(waymark_library name)
   endif()
   add_library(waymark::${name} ALIAS waymark_${name})
   set_target_properties(waymark_${name} PROPERTIES EXPORT_NAME ${name})
+  if(ARG_UNITS)
+    list(LENGTH sources count)
+    math(EXPR size "(${count} + ${ARG_UNITS} - 1) / ${ARG_UNITS}")
+    set_target_properties(waymark_${name} PROPERTIES UNITY_BUILD_BATCH_SIZE ${size})
+  endif()
   target_link_libraries(waymark_${name} PUBLIC waymark_settings)
   if(ARG_HOT)
     target_precompile_headers(waymark_${name} REUSE_FROM waymark_precompiled_hot)

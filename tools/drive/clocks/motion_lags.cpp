@@ -21,7 +21,7 @@ constexpr std::size_t kFewestWindows = 8;
 
 /// What is estimated.
 enum Unknown { speed_lag_s, yaw_rate_lag_s, scale, bias_radps, arm_m, yaw_scale, kUnknowns };
-using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+using LagUnknowns = Eigen::Matrix<double, kUnknowns, 1>;
 using Information = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 using PerFix = std::vector<Eigen::Vector2d>;  // of each fix, m
 
@@ -37,7 +37,7 @@ class WindowFit {
   [[nodiscard]] const std::vector<Window>& windows() const { return windows_; }
   [[nodiscard]] double weight(std::size_t fix) const { return weights_[fix]; }
   /// Returns fix less odometry. Every window is moved and turned so that its weighted squares are least.
-  [[nodiscard]] PerFix residuals(const Unknowns& unknowns) const;
+  [[nodiscard]] PerFix residuals(const LagUnknowns& unknowns) const;
   /// Returns the usual residual per axis, from the median of their lengths.
   [[nodiscard]] double usual(const PerFix& residuals) const;
   /// Fixes with large residuals count less, by Cauchy's loss.
@@ -92,7 +92,7 @@ void WindowFit::add(double moment_s, const Fix& fix) {
   windows_.back().end = places_.size();
 }
 
-PerFix WindowFit::residuals(const Unknowns& unknowns) const {
+PerFix WindowFit::residuals(const LagUnknowns& unknowns) const {
   const double stretch = 1 + unknowns[scale];
   const Eigen::Vector2d antenna_m = antenna_m_ + Eigen::Vector2d(unknowns[arm_m], 0);
   const LaggedPath::Errors errors{unknowns[speed_lag_s], unknowns[yaw_rate_lag_s], unknowns[bias_radps],
@@ -149,11 +149,11 @@ void WindowFit::weigh(const PerFix& residuals) {
 }
 
 /// Changes of the residuals with each unknown, by central differences.
-std::array<PerFix, kUnknowns> slopes_at(const WindowFit& fit, const Unknowns& unknowns) {
-  const Unknowns steps{{0.05, 0.05, 0.01, 0.0005, 0.2, 0.01}};
+std::array<PerFix, kUnknowns> slopes_at(const WindowFit& fit, const LagUnknowns& unknowns) {
+  const LagUnknowns steps{{0.05, 0.05, 0.01, 0.0005, 0.2, 0.01}};
   std::array<PerFix, kUnknowns> slopes;
   for (int k = 0; k < kUnknowns; ++k) {
-    const Unknowns step = steps[k] * Unknowns::Unit(k);
+    const LagUnknowns step = steps[k] * LagUnknowns::Unit(k);
     PerFix& slope = slopes[static_cast<std::size_t>(k)];
     slope = fit.residuals(unknowns + step);
     const PerFix before = fit.residuals(unknowns - step);
@@ -163,14 +163,14 @@ std::array<PerFix, kUnknowns> slopes_at(const WindowFit& fit, const Unknowns& un
 }
 
 /// The normal equations of one step, in units of the usual residual.
-struct NormalEquations {
+struct LagEquations {
   Information information;
-  Unknowns gradient;
+  LagUnknowns gradient;
   Information spread;  ///< of the gradient, from its parts by window
 
   void add(const WindowFit& fit, const WindowFit::Window& window, const PerFix& residuals,
            const std::array<PerFix, kUnknowns>& slopes, double usual_m) {
-    Unknowns part = Unknowns::Zero();
+    LagUnknowns part = LagUnknowns::Zero();
     for (std::size_t i = window.first; i < window.end; ++i) {
       Eigen::Matrix<double, 2, kUnknowns> slope;
       for (int k = 0; k < kUnknowns; ++k) slope.col(k) = slopes[static_cast<std::size_t>(k)][i];
@@ -183,11 +183,11 @@ struct NormalEquations {
   }
 };
 
-NormalEquations equations_at(const WindowFit& fit, const Unknowns& unknowns, const Information& prior) {
+LagEquations equations_at(const WindowFit& fit, const LagUnknowns& unknowns, const Information& prior) {
   const PerFix residuals = fit.residuals(unknowns);
   const auto slopes = slopes_at(fit, unknowns);
   const double usual_m = fit.usual(residuals);
-  NormalEquations equations{prior, prior * unknowns, prior};
+  LagEquations equations{prior, prior * unknowns, prior};
   for (const WindowFit::Window& window : fit.windows())
     equations.add(fit, window, residuals, slopes, usual_m);
   return equations;
@@ -207,18 +207,18 @@ std::optional<MotionLags> estimate_motion_lags(const std::vector<OdometrySample>
   if (odometry.size() < 2 || fixes.empty()) return std::nullopt;
   WindowFit fit(odometry, fixes);
   if (fit.windows().size() < kFewestWindows) return std::nullopt;
-  const Unknowns prior_sigma{{1e3, 1e3, 0.2, 0.1, arm_sigma_m, 0.2}};
+  const LagUnknowns prior_sigma{{1e3, 1e3, 0.2, 0.1, arm_sigma_m, 0.2}};
   const Information prior = prior_sigma.cwiseAbs2().cwiseInverse().asDiagonal();
   // What it costs to know the spread from few windows.
   const auto windows = static_cast<double>(fit.windows().size());
   const double few = windows / (windows - 3);
-  Unknowns unknowns = Unknowns::Zero();
+  LagUnknowns unknowns = LagUnknowns::Zero();
   Information covariance = Information::Zero();
   for (int i = 0; i < kMostSteps; ++i) {
     fit.weigh(fit.residuals(unknowns));
-    const NormalEquations equations = equations_at(fit, unknowns, prior);
+    const LagEquations equations = equations_at(fit, unknowns, prior);
     const Information inverse = equations.information.inverse();
-    Unknowns step = -inverse * equations.gradient;
+    LagUnknowns step = -inverse * equations.gradient;
     for (const Unknown lag : {speed_lag_s, yaw_rate_lag_s})
       step[lag] = std::clamp(step[lag], -kLongestStep_s, kLongestStep_s);
     unknowns += step;

@@ -19,7 +19,7 @@ constexpr double kFixPeriod_s = 1;
 constexpr double kNodePeriod_s = 0.25;
 constexpr int kMostRounds = 10;
 /// At 30 m/s and 0.5 rad/s the edge is then wrong by 0.2 mm.
-constexpr double kSettled_s = 0.005;
+constexpr double kSameOffset_s = 0.005;
 
 double prior_sigma_of(const FusionSettings& settings, const TypeRegistry& registry) {
   constexpr const char* kOption = "time_offset_sigma";
@@ -116,7 +116,7 @@ std::vector<std::optional<TimeOffset>> TimeOffsetSearch::find(const FusionSettin
     if (between_) between_();
     keep_poses(round.graph, coarse_);
     const double moved_s = take_offsets(round, coarse_.drive);
-    if (moved_s < kSettled_s || count == kMostRounds) {
+    if (moved_s < kSameOffset_s || count == kMostRounds) {
       placed.time_offsets_s = coarse_.drive.time_offsets_s;
       return found_in(round, settings, registry_);
     }
