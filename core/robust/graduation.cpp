@@ -226,10 +226,10 @@ void Graduation::apart(Search search) {
   if (!(best_.cost < others.cost)) best_ = std::move(others);
 }
 
-// Tells whether all edges fill the factor so much that each step would take minutes. False closures do, because they join
-// places anywhere; right ones on a million street corners would not.
+// Tells whether all edges fill the factor so much that each step would take many seconds. False closures do, because they join
+// places anywhere; right ones on 200,000 street corners would not.
 bool Graduation::is_dense() const {
-  constexpr double kManyOperations = 1e12;
+  constexpr double kManyOperations = 1e11;
   if (factorization_operations(graph_) < kManyOperations) return false;
   const Graph trusted = without_edges(graph_, candidates_);
   return joining_edges(graph_, candidates_, trusted).empty() && may_be_grown(trusted);
