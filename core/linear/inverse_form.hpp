@@ -17,10 +17,12 @@ struct BlockRow {
   Eigen::MatrixXd values;  ///< one row per scalar of it
 };
 
-/// With A = L L^T the form is Y^T Y, Y = L^-1 B. Y is zero but on the ways from the block rows of B to the root of the
-/// elimination tree (Gilbert, Peierls 1988). Only these supernodes are visited, once, and nothing is substituted backwards.
+/// With A = L L^T the form is Y^T Y, Y = L^-1 B. Y is zero but on the ways from the block rows of B to the
+/// root of the elimination tree (Gilbert, Peierls 1988). Only these supernodes are visited, once, and nothing
+/// is substituted backwards.
 ///
-/// The factor must outlive this object, must be ok, and must not change meanwhile. One thread at a time may use an object.
+/// The factor must outlive this object, must be ok, and must not change meanwhile. One thread at a time may
+/// use an object.
 class InverseForm {
  public:
   explicit InverseForm(const BlockCholesky& factor);

@@ -431,8 +431,8 @@ void Loop::retreat() {
   last_accepted_ = false;
 }
 
-/// Tells whether the last steps have lowered the lowest chi2 by a noticeable share, or are too few to tell: then the way
-/// on this side is good enough. Steps that were undone have lowered nothing.
+/// Tells whether the last steps have lowered the lowest chi2 by a noticeable share, or are too few to tell:
+/// then the way on this side is good enough. Steps that were undone have lowered nothing.
 bool Loop::makes_progress() {
   const std::size_t steps = summary_.records.size();
   return steps < kStepsOfProgress || best_after(steps - kStepsOfProgress) - best_chi2_ > kProgress * chi2_;

@@ -116,7 +116,8 @@ Eigen::MatrixXd spanned(const Eigen::MatrixXd& matrix) {
 }
 
 /// Compares an error with what the other edges predict.
-/// @param root of the information @param predicted J P J^T @param open how motions that contradict nothing move it
+/// @param root of the information @param predicted J P J^T @param open how motions that contradict nothing
+/// move it
 Innovation compare(const Eigen::VectorXd& e, const Eigen::MatrixXd& root, const Eigen::MatrixXd& predicted,
                    const Eigen::MatrixXd& open, Membership membership) {
   if (root.rows() == 0) return {0, 0};

@@ -28,8 +28,8 @@ enum class Membership {
 /// How an edge agrees with other edges. All is infinite if these determine nothing.
 struct Innovation {
   double squared;  ///< e^T S^-1 e
-  /// half the logarithm of det S / det Omega^-1: how much less surely the other edges predict what the edge measures
-  /// than it measures it. An edge outside that they hardly predict agrees with them by chance.
+  /// half the logarithm of det S / det Omega^-1: how much less surely the other edges predict what the edge
+  /// measures than it measures it. An edge outside that they hardly predict agrees with them by chance.
   double looseness;
 };
 
@@ -41,10 +41,10 @@ struct Innovation {
 /// an edge inside that no other edge checks, and infinite for all edges if the normal equations are
 /// not positive definite.
 ///
-/// Vertices that are held, fixed, or joined by no edge of `kept` count as known. A part that is held in some coordinates
-/// only is free to do what its edges do not see: an edge outside is compared after the motion that suits it best, and
-/// its looseness is infinite if that moves its error. The cost is one factorisation, and per
-/// edge the part of a solve that inverse_form.hpp tells.
+/// Vertices that are held, fixed, or joined by no edge of `kept` count as known. A part that is held in some
+/// coordinates only is free to do what its edges do not see: an edge outside is compared after the motion
+/// that suits it best, and its looseness is infinite if that moves its error. The cost is one factorisation,
+/// and per edge the part of a solve that inverse_form.hpp tells.
 [[nodiscard]] std::vector<Innovation> innovations(const Graph& graph, std::span<const EdgePlace> edges,
                                                   Membership membership, const Graph& kept);
 

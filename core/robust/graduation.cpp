@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <span>
 #include <utility>
 
@@ -110,6 +111,7 @@ class Graduation {
   Algorithm& algorithm_;
   LinearSolver& solver_;
   const GraduationOptions& options_;
+  std::map<int, double> bounds_;  // of squared errors, by dimension
   std::vector<EdgePlace> candidates_;
   std::vector<EdgePlace> trusted_;                 // the other ones
   std::vector<std::vector<EdgePlace>> parallels_;  // groups of candidates that would be trusted alone
@@ -125,6 +127,8 @@ void Graduation::find_candidates() {
     result_.weights.emplace_back(graph_.batch(b).size(), 1.0);
     for (std::size_t e = 0; e < graph_.batch(b).size(); ++e) {
       (options_.trusted(graph_, {b, e}) ? trusted_ : candidates_).push_back({b, e});
+      const auto [bound, is_new] = bounds_.try_emplace(graph_.batch(b).error_dimension(e));
+      if (is_new) bound->second = chi_square_quantile(options_.inlier_probability, bound->first);
     }
   }
   result_.candidates = candidates_.size();
@@ -142,8 +146,7 @@ void Graduation::move_to_candidates(const std::vector<EdgePlace>& edges) {
 }
 
 double Graduation::bound(EdgePlace place) const {
-  const int dimension = graph_.batch(place.batch).error_dimension(place.edge);
-  return chi_square_quantile(options_.inlier_probability, dimension);
+  return bounds_.at(graph_.batch(place.batch).error_dimension(place.edge));
 }
 
 // What an edge costs outside. A trusted edge costs more: a false closure that only joins a tail of the graph and each
@@ -201,8 +204,8 @@ void Graduation::search() {
   cross_examine();
 }
 
-// Grows a split from the trusted edges, joined by one edge of each group of parallel ones. If that is not the end, searches
-// from the minimum of these edges.
+// Grows a split from the trusted edges, joined by one edge of each group of parallel ones. If that is not the
+// end, searches from the minimum of these edges.
 void Graduation::search_from_trusted(bool first_of_parallels) {
   std::vector<EdgePlace> out = candidates_;
   for (const std::vector<EdgePlace>& group : parallels_)
@@ -218,7 +221,8 @@ void Graduation::search_from_trusted(bool first_of_parallels) {
   });
 }
 
-// Improves the best split of this search, even if another search has found a cheaper one that may be improved no more.
+// Improves the best split of this search, even if another search has found a cheaper one that may be improved
+// no more.
 template <typename Search>
 void Graduation::apart(Search search) {
   Verdict others = std::exchange(best_, {});
@@ -226,8 +230,8 @@ void Graduation::apart(Search search) {
   if (!(best_.cost < others.cost)) best_ = std::move(others);
 }
 
-// Tells whether all edges fill the factor so much that each step would take many seconds. False closures do, because they join
-// places anywhere; right ones on 200,000 street corners would not.
+// Tells whether all edges fill the factor so much that each step would take many seconds. False closures do,
+// because they join places anywhere; right ones on 200,000 street corners would not.
 bool Graduation::is_dense() const {
   constexpr double kManyOperations = 1e11;
   if (factorization_operations(graph_) < kManyOperations) return false;
@@ -249,8 +253,9 @@ bool Graduation::has_many_outliers() const {
   return static_cast<double>(best_.outliers.size()) > std::max(kFewOutliers, many);
 }
 
-// Returns the outliers that remain if those that agree with the rest return, a share of them at a time. Those that the
-// rest predicts most surely come first: others may agree by chance, and once their betters are in, they do not.
+// Returns the outliers that remain if those that agree with the rest return, a share of them at a time. Those
+// that the rest predicts most surely come first: others may agree by chance, and once their betters are in,
+// they do not.
 std::vector<EdgePlace> Graduation::grown_from(std::vector<EdgePlace> out) {
   constexpr int kMaxSplits = 1000;
   constexpr std::size_t kShare = 10;
@@ -483,15 +488,13 @@ GraduationResult Graduation::run() {
   const std::vector<double> of_all_edges = graph_.values();
   const bool suspicious = dense_ || !beyond_bound().empty() || !contradicted(trusted_).empty();
   // 2. Narrow the loss from there, and if that does not end well, from the minimum of what is trusted.
-  if (!interrupted_ && suspicious && !dense_) {
-    search();
-    if (best_.values.empty()) best_ = optimize_without({});
-  }
+  if (!interrupted_ && suspicious) search();
+  if (best_.values.empty() && !dense_) best_ = optimize_without({});
   if (!interrupted_ && suspicious && (dense_ || is_implausible() || has_many_outliers())) {
     search_from_trusted(true);
     if (!parallels_.empty()) search_from_trusted(false);
   }
-  if (best_.values.empty()) best_ = optimize_without(dense_ ? candidates_ : std::vector<EdgePlace>{});
+  if (best_.values.empty()) best_ = optimize_without(candidates_);
   // 3. Doubt what was trusted: single edges, and all of them if they cost many of the others.
   for (int round = 0; round < kMaxDoubts && suspicious && options_.doubts_trusted && doubt_trusted(); ++round)
     search();

@@ -21,10 +21,10 @@
 /// candidates from the beginning. So are those that the best split contradicts (their error is beyond
 /// the quantile, widened if the errors of the trusted edges are larger than stated as a whole), if it
 /// becomes cheaper without them. If the kept edges still do not fit, or more than a fifth of the candidates
-/// are outliers, a split is grown from the trusted edges: those candidates return that agree with the rest, a few
-/// at a time, and first those whose place the rest knows best. The loss is not narrowed at all where all edges
-/// together would fill the factor. If that does not end well either, the search is repeated from the minimum
-/// of the trusted edges alone. If more than a fifth of the candidates are outliers, it is repeated
+/// are outliers, a split is grown from the trusted edges: those candidates return that agree with the rest, a
+/// few at a time, and first those whose place the rest knows best. The loss is not narrowed at all where all
+/// edges together would fill the factor. If that does not end well either, the search is repeated from the
+/// minimum of the trusted edges alone. If more than a fifth of the candidates are outliers, it is repeated
 /// without any trust: a wrong edge that alone joins two parts contradicts nothing, once all right ones
 /// between them are out. The cheapest split of all searches counts.
 ///

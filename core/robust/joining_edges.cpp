@@ -154,8 +154,8 @@ class Rivals {
     return moved;
   }
 
-  /// Returns the sum of the errors, in standard deviations, if an edge decides: false ones in the minority add the
-  /// same to all others.
+  /// Returns the sum of the errors, in standard deviations, if an edge decides: false ones in the minority
+  /// add the same to all others.
   [[nodiscard]] double misfit(std::size_t decides) {
     const std::optional<FiniteMotion> motion = motion_by(edges_[decides]);
     if (!motion) return std::numeric_limits<double>::infinity();

@@ -240,7 +240,8 @@ TEST_CASE("graduation: false closures in groups that agree among themselves are 
   CHECK(score.chi2_error < 1e-6);
 }
 
-// The narrowing loss ends in a wrong world there. What is grown from the odometry, surest closures first, does not.
+// The narrowing loss ends in a wrong world there. What is grown from the odometry, surest closures first,
+// does not.
 TEST_CASE("graduation: false closures in groups are found even if they outnumber the right ones") {
   const TypeRegistry registry = full_registry();
   for (const std::uint64_t seed : {1, 4}) {
@@ -458,8 +459,8 @@ TEST_CASE("joining edges: parts that are anchored in part keep the motions that 
 }
 
 TEST_CASE("innovation: what a part that is anchored in part is free to do contradicts no edge") {
-  // A pose has a fix and no heading. An edge from a fixed pose tells all three numbers: the heading follows, and the
-  // places differ by 2 m, where either has a deviation of 1 m.
+  // A pose has a fix and no heading. An edge from a fixed pose tells all three numbers: the heading follows,
+  // and the places differ by 2 m, where either has a deviation of 1 m.
   Graph all;
   all.add_vertex<VertexSe2>(VertexId(0), {0, 0, 0});
   all.add_vertex<VertexSe2>(VertexId(1), {5, 0, 0.5});
@@ -473,7 +474,8 @@ TEST_CASE("innovation: what a part that is anchored in part is free to do contra
 
 TEST_CASE(
     "innovation: what a part that is anchored in part is free to do explains no edge that it does not move") {
-  // Two poses turn about the fix of the first one. Another fix there, and another edge between them, see no turn.
+  // Two poses turn about the fix of the first one. Another fix there, and another edge between them, see no
+  // turn.
   Graph all;
   all.add_vertex<VertexSe2>(VertexId(1), {500, 20, 0.5});
   all.add_vertex<VertexSe2>(VertexId(2), {500 + std::cos(0.5), 20 + std::sin(0.5), 0.5});
@@ -492,8 +494,8 @@ TEST_CASE(
 
 TEST_CASE(
     "graduation: of closures that contradict each other one holds two parts together, and is not left out") {
-  // The second track begins in the middle between two closures: no loss moves it to either, so both are left out on the
-  // way, and compared with where it is, neither agrees.
+  // The second track begins in the middle between two closures: no loss moves it to either, so both are left
+  // out on the way, and compared with where it is, neither agrees.
   const TypeRegistry registry = full_registry();
   Graph graph;
   for (const int track : {0, 1}) {

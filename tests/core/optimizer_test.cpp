@@ -86,8 +86,8 @@ Graph jump_at_1(const EdgeJump& edge) {
   return graph;
 }
 
-/// Proposes to go up by 1, after each rejection by half as much. Beyond the jump it goes up by 1, and retreats where all
-/// is flat.
+/// Proposes to go up by 1, after each rejection by half as much. Beyond the jump it goes up by 1, and
+/// retreats where all is flat.
 class HalvingSteps final : public Algorithm {
  public:
   void reset() override { length_ = 1; }
@@ -234,7 +234,8 @@ TEST_CASE("optimizer: an algorithm that climbed goes back to the lowest chi2 by 
 }
 
 TEST_CASE("optimizer: a crossing of a jump that ends where all is flat is counted as futile") {
-  // Steps are rejected 11 times, until there is no progress of 10 steps; then once and 6 times, then once and 12 times.
+  // Steps are rejected 11 times, until there is no progress of 10 steps; then once and 6 times, then once and
+  // 12 times.
   Graph graph = jump_at_1({.slope = 0, .beyond = 2});
   HalvingSteps steps;
   const Summary summary = optimize(graph, steps, *registry().make_linear_solver("eigen"), {});
@@ -245,8 +246,8 @@ TEST_CASE("optimizer: a crossing of a jump that ends where all is flat is counte
 }
 
 TEST_CASE("optimizer: steps beyond a jump that were undone are no progress on this side") {
-  // Beyond the jump 15 steps lower chi2 from 3^2 to 2.25^2 and are undone. The next crossing is as soon as the watch has
-  // patience for, once and 6 times.
+  // Beyond the jump 15 steps lower chi2 from 3^2 to 2.25^2 and are undone. The next crossing is as soon as
+  // the watch has patience for, once and 6 times.
   Graph graph = jump_at_1({.slope = -0.05, .beyond = 3});
   HalvingSteps steps;
   const Summary summary = optimize(graph, steps, *registry().make_linear_solver("eigen"), {});

@@ -16,8 +16,8 @@ namespace WAYMARK_EXPORT waymark {
 /// chart is one (linear_chart); rigid motions move the position as a rigid motion does.
 [[nodiscard]] std::vector<std::string> broken_promises(const VertexType& type);
 
-/// Tested: all numbers are finite; rho(0) = 0 and rho'(0) = 1; the weight lies in [0, 1] and never grows; weight and
-/// curvature are the first and second derivative of rho, by differences.
+/// Tested: all numbers are finite; rho(0) = 0 and rho'(0) = 1; the weight lies in [0, 1] and never grows;
+/// weight and curvature are the first and second derivative of rho, by differences.
 [[nodiscard]] std::vector<std::string> broken_promises(const LossType& type);
 
 }  // namespace waymark

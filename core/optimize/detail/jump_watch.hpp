@@ -11,9 +11,10 @@ namespace waymark::detail {
 /// this side, so that the jump is worth being crossed. A crossing that led nowhere makes the watch more patient.
 class JumpWatch {
  public:
-  /// Hears of a rejected step. Those before a noticeable progress were rejected elsewhere, and count no more; small steps
-  /// towards the jump may be accepted in between.
-  /// @param length of the step @param misfit predicted minus actual decrease of chi2 @param chi2 before the step
+  /// Hears of a rejected step. Those before a noticeable progress were rejected elsewhere, and count no more;
+  /// small steps towards the jump may be accepted in between.
+  /// @param length of the step @param misfit predicted minus actual decrease of chi2 @param chi2 before the
+  /// step
   /// @return whether to take this step, up the jump
   [[nodiscard]] bool rejected(double length, double misfit, double chi2) {
     const bool same =

@@ -14,7 +14,8 @@ class FreeMotions {
   FreeMotions() = default;
   /// All of them. @param count 2 for a point, 3 for poses
   [[nodiscard]] static FreeMotions all(int count);
-  /// @param motions 3 x k: along x, along y and about the place @param frame one place for all parts that are compared
+  /// @param motions 3 x k: along x, along y and about the place @param frame one place for all parts that are
+  /// compared
   [[nodiscard]] static FreeMotions some(const Eigen::MatrixXd& motions, const RigidMotionView::Place& place,
                                         const RigidMotionView::Place& frame);
 

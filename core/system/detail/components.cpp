@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -10,7 +9,7 @@
 
 namespace waymark::detail {
 
-// Union-find with path halving. The root is the first vertex of each component.
+// The name of a set is its first vertex.
 std::vector<std::int32_t> find_components(const Graph& graph) {
   DisjointSets sets(graph.vertex_count());
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {

@@ -21,7 +21,8 @@ struct FiniteMotion {
 /// Moves a vertex of a type with rigid_motion; others stay.
 void move(Graph& graph, VertexIndex v, const FiniteMotion& motion);
 
-/// Returns the motion of some vertices of an edge that makes its error smallest, found from their present values.
+/// Returns the motion of some vertices of an edge that makes its error smallest, found from their present
+/// values.
 /// @param graph with the vertices; it gets its values back @param moved those vertices
 /// @return nothing if it is not finite
 [[nodiscard]] std::optional<FiniteMotion> motion_to_agree(const EdgeBatchBase& batch, std::size_t edge,

@@ -52,8 +52,8 @@ struct ChordPair {
 /// Returns the bias that the chords show in the median; none for few.
 [[nodiscard]] YawBias bias_of(std::span<const ChordPair> chords);
 
-/// Returns the fixes beside the odometry without an error of its yaw rate: what lies between two fixes is turned as a
-/// whole.
+/// Returns the fixes beside the odometry without an error of its yaw rate: what lies between two fixes is
+/// turned as a whole.
 [[nodiscard]] ReckonedFixes without_error(ReckonedFixes receiver, const YawError& error);
 
 /// A turn from one chord to the next.

@@ -49,8 +49,8 @@ double cost_of_place(unsigned, const double* at, double*, void* data) {
   }
 }
 
-/// Finds the least cost without derivatives (BOBYQA, Powell 2009): far from it the errors of precise fixes cost the
-/// same wherever the antenna is.
+/// Finds the least cost without derivatives (BOBYQA, Powell 2009): far from it the errors of precise fixes
+/// cost the same wherever the antenna is.
 Minimum least_of(const PlaceAndDelay& bounds, TrialDrive& trial) {
   constexpr int kMostEvaluations = 60;
   const PlaceAndDelay low = -bounds;

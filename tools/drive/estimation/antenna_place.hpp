@@ -23,9 +23,9 @@ struct AntennaPlace {
 /// Finds the place that makes the fixes most probable, together with a delay of them, on a sample of the drive.
 /// @param placed with the time offsets of its fixes @param settings with the noise
 /// @param between called between its fusions; what it throws ends the search. Empty: nothing is called
-/// @return empty if an antenna is stated elsewhere than at that point, if there are several receivers, or if the place
-/// is not significant: half chi2 falls by less than 15, or it is known to a quarter of its size only, or it is no
-/// decimetre, or beyond 9 m
+/// @return empty if an antenna is stated elsewhere than at that point, if there are several receivers, or if
+/// the place is not significant: half chi2 falls by less than 15, or it is known to a quarter of its size
+/// only, or it is no decimetre, or beyond 9 m
 [[nodiscard]] std::optional<AntennaPlace> find_antenna_place(const PlacedDrive& placed,
                                                              std::span<const PreparedSensor> sensors,
                                                              const FusionSettings& settings,

@@ -86,19 +86,22 @@ struct YawError {
   double bias_radpm = 0;  ///< of wheels that differ in size, or of a steering wheel that is not straight
 };
 
-/// A constant by which the odometry turns more than the fixes: of time or of the way, whichever the chords fit better.
+/// A constant by which the odometry turns more than the fixes: of time or of the way, whichever the chords
+/// fit better.
 struct YawBias {
   double radps = 0;
   double radpm = 0;
   double sigmas = 0;  ///< how significant it is
 
-  /// Whether it is significant, and poses that are reckoned with it are so bent that they cannot be laid along fixes.
+  /// Whether it is significant, and poses that are reckoned with it are so bent that they cannot be laid
+  /// along fixes.
   [[nodiscard]] bool is_large() const;
 
   /// Returns it with a factor.
   [[nodiscard]] YawError with(double factor) const { return {factor, radps, radpm}; }
 };
-/// Returns a drive without an error of its yaw rate. Bridged intervals stay: the motion of the fixes is in them.
+/// Returns a drive without an error of its yaw rate. Bridged intervals stay: the motion of the fixes is in
+/// them.
 [[nodiscard]] Timeline without_error(Timeline timeline, const YawError& error);
 
 }  // namespace waymark::drive

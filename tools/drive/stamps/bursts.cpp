@@ -51,8 +51,8 @@ bool most(const std::vector<Burst>& bursts, std::size_t first, Tell tell) {
   return 10 * count >= 9 * (bursts.size() - first);
 }
 
-/// Tells whether the readings of a column change within bursts as they do between them. What counts, such as ticks of
-/// wheels, changes by more where bursts are missing.
+/// Tells whether the readings of a column change within bursts as they do between them. What counts, such as
+/// ticks of wheels, changes by more where bursts are missing.
 bool change_within(const SensorTable& rows, std::size_t column, const std::vector<Burst>& bursts,
                    double period_s) {
   constexpr double kAddUp = 1.5;
@@ -80,7 +80,8 @@ bool change_within(const SensorTable& rows, std::size_t column, const std::vecto
   return inside > 0 && across >= kAddUp * inside && between <= kBetween * inside;
 }
 
-/// Tells whether all stamps are whole multiples of a decimal unit that is the period, but for a stated offset.
+/// Tells whether all stamps are whole multiples of a decimal unit that is the period, but for a stated
+/// offset.
 bool cut_off(const std::vector<Stamp>& stamps, double period_s) {
   for (std::int64_t unit = 1'000'000'000; unit >= 1'000'000; unit /= 10) {
     if (std::abs(period_s * 1e9 / static_cast<double>(unit) - 1) > 0.1) continue;

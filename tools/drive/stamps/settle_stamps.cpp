@@ -63,8 +63,9 @@ SensorTable common_channels(const SensorTable& readings) {
 /// The steps back of the one clock that the channels of a log have.
 class StepsOfClock {
  public:
-  /// Tells whether no other channel has met a step before. Channels meet it a few intervals of their own apart, and a step is
-  /// more than five of them. @param behind the first stamp behind the step @param back_s its size
+  /// Tells whether no other channel has met a step before. Channels meet it a few intervals of their own
+  /// apart, and a step is more than five of them. @param behind the first stamp behind the step @param back_s
+  /// its size
   [[nodiscard]] bool is_new(std::size_t channel, Stamp behind, double back_s) {
     const bool is_known = std::any_of(met_.begin(), met_.end(), [&](const Step& other) {
       if (other.channel == channel) return false;

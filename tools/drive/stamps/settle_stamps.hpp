@@ -15,7 +15,8 @@ void settle_stamps(std::vector<OdometrySample>& samples, std::size_t first, cons
                    PrepareReport& report);
 
 /// The same for a log of channels. Each channel has a past of its own: threads of a logger may write one after the
-/// other. A step of their clock is told once, and rows that hold nothing else are left out. Bursts are those of rows that hold the same channels.
+/// other. A step of their clock is told once, and rows that hold nothing else are left out. Bursts are those
+/// of rows that hold the same channels.
 /// @param readings NaN: not in this row
 void settle_stamps(SensorTable& readings, const std::string& file, PrepareReport& report);
 

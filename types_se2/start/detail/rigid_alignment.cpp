@@ -13,8 +13,8 @@ namespace {
 constexpr std::size_t kProposals = 200;
 /// Points nearer to each other than this share of the whole extent say nothing about the turn.
 constexpr double kApart = 1e-6;
-/// A motion keeps distances: two pairs whose points are not equally far apart, but for this share or these metres of noise,
-/// are not both right. Without that, any two pairs would fit.
+/// A motion keeps distances: two pairs whose points are not equally far apart, but for this share or these
+/// metres of noise, are not both right. Without that, any two pairs would fit.
 constexpr double kSameDistance = 0.1;
 constexpr double kNoise_m = 0.5;
 

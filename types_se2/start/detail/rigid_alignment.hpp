@@ -21,7 +21,8 @@ struct PointPair {
 
 /// Returns the motion, without mirroring or scale, that leaves the least sum of distances: false pairs do not
 /// turn it, if fewer than half are false. Two pairs at a time propose motions, and the best one is then refined.
-/// @return nothing where no two pairs have points that are apart, and equally far in both frames to a tenth or half a metre
+/// @return nothing where no two pairs have points that are apart, and equally far in both frames to a tenth
+/// or half a metre
 [[nodiscard]] std::optional<Pose2<double>> rigid_alignment(std::span<const PointPair> pairs);
 
 }  // namespace waymark
