@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include <waymark/core/system/foreign_poses.hpp>
+#include <waymark/types_se2/se2.hpp>
 #include <waymark/types_se2/start/detail/bodies.hpp>
 #include <waymark/types_se2/start/detail/points.hpp>
 #include <waymark/types_se2/start/detail/relations.hpp>
