@@ -6,14 +6,16 @@
 namespace waymark {
 
 double chi_square_tail(double x, int freedom) {
+  if (x <= 0) return 1;
   const double half = 0.5 * x;
   const bool even = freedom % 2 == 0;
   double tail = even ? std::exp(-half) : std::erfc(std::sqrt(half));
-  // Two more degrees of freedom add half^(d/2) e^(-half) / Gamma(d/2 + 1).
-  double term = even ? half * std::exp(-half) : 2 * std::sqrt(half / std::numbers::pi) * std::exp(-half);
+  // Two more degrees of freedom add half^(d/2) e^(-half) / Gamma(d/2 + 1). Of many degrees the first of these
+  // terms are too small for a double, and the last ones are not.
+  double log_term = even ? std::log(half) - half : std::log(2 * std::sqrt(half / std::numbers::pi)) - half;
   for (int d = even ? 2 : 1; d < freedom; d += 2) {
-    tail += term;
-    term *= half / (0.5 * d + 1);
+    tail += std::exp(log_term);
+    log_term += std::log(half / (0.5 * d + 1));
   }
   return tail;
 }

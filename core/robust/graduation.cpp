@@ -11,6 +11,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/linear/block_symbolic.hpp>
 #include <waymark/core/robust/chi_square.hpp>
+#include <waymark/core/robust/detail/moved_errors.hpp>
 #include <waymark/core/robust/graduation.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/core/system/structure.hpp>
@@ -76,7 +77,8 @@ class Graduation {
   void find_candidates();
   void move_to_candidates(const std::vector<EdgePlace>& edges);
   void search();
-  void search_from_trusted(bool first_of_parallels);
+  template <typename Search>
+  void from_trusted(Search search);
   template <typename Search>
   void apart(Search search);
   std::vector<EdgePlace> grown_from(std::vector<EdgePlace> out);
@@ -86,7 +88,8 @@ class Graduation {
   bool is_dense() const;
   bool may_be_grown(const Graph& trusted) const;
   bool is_implausible() const;
-  bool has_many_outliers() const;
+  bool ends_badly(double share) const;
+  bool outliers_agree(double share) const;
   double bound(EdgePlace place) const;
   double price(EdgePlace place) const;
   std::vector<EdgePlace> beyond_bound() const;
@@ -95,10 +98,12 @@ class Graduation {
   void attach_losses();
   void narrow();
   void judge(std::vector<EdgePlace> outliers);
+  void return_singly();
   void cross_examine();
   Verdict optimize_without(std::vector<EdgePlace> outliers);
   std::vector<EdgePlace> most_accused(std::span<const EdgePlace> edges, const Verdict& verdict);
-  std::vector<EdgePlace> joining(const Verdict& verdict, const Graph& kept) const;
+  std::vector<EdgePlace> joining(std::span<const EdgePlace> outside, const Graph& kept) const;
+  std::vector<EdgePlace> without_joining(const std::vector<EdgePlace>& outside) const;
   std::vector<EdgePlace> still_out(const Verdict& verdict, std::vector<EdgePlace>& returned);
   Summary count(Summary summary) {
     result_.iterations += summary.iterations;
@@ -204,21 +209,16 @@ void Graduation::search() {
   cross_examine();
 }
 
-// Grows a split from the trusted edges, joined by one edge of each group of parallel ones. If that is not the
-// end, searches from the minimum of these edges.
-void Graduation::search_from_trusted(bool first_of_parallels) {
-  std::vector<EdgePlace> out = candidates_;
-  for (const std::vector<EdgePlace>& group : parallels_)
-    std::erase(out, first_of_parallels ? group.front() : group.back());
-  apart([&] {
-    judge(grown_from(out));
-    cross_examine();
-  });
-  if (dense_ || (!is_implausible() && !has_many_outliers())) return;
-  apart([&] {
-    judge(std::move(out));
-    search();
-  });
+// Calls a search with all candidates outside, but one edge of each group of parallel ones: the first one, then the last.
+template <typename Search>
+void Graduation::from_trusted(Search search) {
+  for (const bool first : {true, false}) {
+    std::vector<EdgePlace> out = candidates_;
+    for (const std::vector<EdgePlace>& group : parallels_)
+      std::erase(out, first ? group.front() : group.back());
+    apart([&] { search(std::move(out)); });
+    if (parallels_.empty()) return;
+  }
 }
 
 // Improves the best split of this search, even if another search has found a cheaper one that may be improved
@@ -230,36 +230,51 @@ void Graduation::apart(Search search) {
   if (!(best_.cost < others.cost)) best_ = std::move(others);
 }
 
+// Tells whether another search may find better. @param share of the candidates that may be outside
+bool Graduation::ends_badly(double share) const {
+  return !interrupted_ && !dense_ && (best_.values.empty() || is_implausible() || outliers_agree(share));
+}
+
 // Tells whether all edges fill the factor so much that each step would take many seconds. False closures do,
 // because they join places anywhere; right ones on 200,000 street corners would not.
 bool Graduation::is_dense() const {
   constexpr double kManyOperations = 1e11;
   if (factorization_operations(graph_) < kManyOperations) return false;
-  const Graph trusted = without_edges(graph_, candidates_);
-  return joining_edges(graph_, candidates_, trusted).empty() && may_be_grown(trusted);
+  return may_be_grown(without_edges(graph_, without_joining(candidates_)));
 }
 
-// Tells whether trusted edges place what they join, or nothing else says where that is.
-bool Graduation::may_be_grown(const Graph& trusted) const {
-  const std::vector<char> held = find_gauge(trusted, PartlyAnchored::hold_vertex).held;
+// Tells whether these edges place what they join, or nothing else says where that is. Elsewhere the innovations
+// would take a place for known that nothing places.
+bool Graduation::may_be_grown(const Graph& first) const {
+  const std::vector<char> held = find_gauge(first, PartlyAnchored::hold_vertex).held;
   if (std::none_of(held.begin(), held.end(), [](char mark) { return mark != 0; })) return true;
   return std::all_of(candidates_.begin(), candidates_.end(), [&](EdgePlace place) {
-    return graph_.batch(place.batch).vertices(place.edge).size() > 1;
+    const std::span<const VertexIndex> vertices = graph_.batch(place.batch).vertices(place.edge);
+    return std::count_if(vertices.begin(), vertices.end(), [&](VertexIndex v) { return !graph_.fixed(v); }) >
+           1;
   });
 }
 
-bool Graduation::has_many_outliers() const {
-  const double many = kManyOutliers * static_cast<double>(candidates_.size());
-  return static_cast<double>(best_.outliers.size()) > std::max(kFewOutliers, many);
+// Tells whether more than a share of the candidates are outside, and some of them want the same: these may be right,
+// and what contradicts them wrong.
+bool Graduation::outliers_agree(double share) const {
+  const double many = share * static_cast<double>(candidates_.size());
+  if (static_cast<double>(best_.outliers.size()) <= std::max(kFewOutliers, many)) return false;
+  Graph at_best = graph_;
+  at_best.set_values(best_.values);
+  const double wide = 4 * chi_square_quantile(options_.inlier_probability, 3);
+  return static_cast<double>(detail::most_that_agree(at_best, best_.outliers, wide)) >= kFewOutliers;
 }
 
 // Returns the outliers that remain if those that agree with the rest return, a share of them at a time. Those
 // that the rest predicts most surely come first: others may agree by chance, and once their betters are in,
-// they do not.
+// they do not. What nothing joins is joined by one edge before.
 std::vector<EdgePlace> Graduation::grown_from(std::vector<EdgePlace> out) {
   constexpr int kMaxSplits = 1000;
   constexpr std::size_t kShare = 10;
   constexpr double kTogether = 2;  // of the looseness, between the first and the last that return at a time
+  out = without_joining(out);
+  if (!may_be_grown(without_edges(graph_, out))) return out;
   std::vector<EdgePlace> refused;  // had returned, and were contradicted by others
   for (int split = 0; split < kMaxSplits; ++split) {
     Verdict verdict;
@@ -271,8 +286,6 @@ std::vector<EdgePlace> Graduation::grown_from(std::vector<EdgePlace> out) {
     if (interrupted_) break;
     if (verdict.cost < best_.cost) best_ = verdict;
     const Graph kept = without_edges(graph_, verdict.outliers);
-    // The innovations would take parts for known that nothing places.
-    if (split == 0 && !(joining(verdict, kept).empty() && may_be_grown(kept))) break;
     const std::vector<Innovation> innovation =
         innovations(graph_, verdict.outliers, Membership::outside, kept);
     std::vector<std::pair<double, EdgePlace>> agreeing;
@@ -338,12 +351,19 @@ Verdict Graduation::optimize_without(std::vector<EdgePlace> outliers) {
 }
 
 // Returns the edges without which a split falls apart, although nothing contradicts them; trusted ones are preferred.
-std::vector<EdgePlace> Graduation::joining(const Verdict& verdict, const Graph& kept) const {
-  std::vector<EdgePlace> edges = verdict.outliers;
+std::vector<EdgePlace> Graduation::joining(std::span<const EdgePlace> outside, const Graph& kept) const {
+  std::vector<EdgePlace> edges(outside.begin(), outside.end());
   std::stable_partition(edges.begin(), edges.end(),
                         [&](EdgePlace place) { return options_.trusted(graph_, place); });
   std::vector<EdgePlace> result = joining_edges(graph_, edges, kept);
   std::sort(result.begin(), result.end());
+  return result;
+}
+
+std::vector<EdgePlace> Graduation::without_joining(const std::vector<EdgePlace>& outside) const {
+  const std::vector<EdgePlace> joins = joining(outside, without_edges(graph_, outside));
+  std::vector<EdgePlace> result;
+  std::set_difference(outside.begin(), outside.end(), joins.begin(), joins.end(), std::back_inserter(result));
   return result;
 }
 
@@ -353,7 +373,7 @@ std::vector<EdgePlace> Graduation::joining(const Verdict& verdict, const Graph& 
 std::vector<EdgePlace> Graduation::still_out(const Verdict& verdict, std::vector<EdgePlace>& returned) {
   const Graph kept = without_edges(graph_, verdict.outliers);
   const std::vector<Innovation> innovation = innovations(graph_, verdict.outliers, Membership::outside, kept);
-  const std::vector<EdgePlace> joins = joining(verdict, kept);
+  const std::vector<EdgePlace> joins = joining(verdict.outliers, kept);
   std::vector<EdgePlace> out;
   for (std::size_t i = 0; i < verdict.outliers.size(); ++i) {
     const EdgePlace place = verdict.outliers[i];
@@ -408,10 +428,31 @@ void Graduation::judge(std::vector<EdgePlace> outliers) {
   }
 }
 
+// Lets edges return one at a time, the one that agrees best first: of two that each agree with the rest, one may
+// be false, and then both together cost more.
+void Graduation::return_singly() {
+  constexpr int kMaxReturns = 20;
+  for (int round = 0; round < kMaxReturns && !interrupted_ && !best_.outliers.empty(); ++round) {
+    graph_.set_values(best_.values);
+    std::vector<EdgePlace> outliers = best_.outliers;
+    const std::vector<Innovation> innovation =
+        innovations(graph_, outliers, Membership::outside, without_edges(graph_, outliers));
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < outliers.size(); ++i)
+      if (innovation[i].squared < innovation[best].squared) best = i;
+    if (!(innovation[best].squared <= price(outliers[best]))) return;
+    outliers.erase(outliers.begin() + static_cast<std::ptrdiff_t>(best));
+    const double before = best_.cost;
+    judge(std::move(outliers));
+    if (!(best_.cost < before)) return;
+  }
+}
+
 // Finds edges that bend the rest without a large error of their own. This is done only for the best
 // split, because it takes an innovation per candidate.
 void Graduation::cross_examine() {
   constexpr int kMaxRounds = 20;
+  return_singly();
   for (int round = 0; round < kMaxRounds && !interrupted_ && !best_.values.empty(); ++round) {
     graph_.set_values(best_.values);
     std::vector<EdgePlace> outliers = most_accused(inside(best_), best_);
@@ -487,18 +528,32 @@ GraduationResult Graduation::run() {
   }
   const std::vector<double> of_all_edges = graph_.values();
   const bool suspicious = dense_ || !beyond_bound().empty() || !contradicted(trusted_).empty();
-  // 2. Narrow the loss from there, and if that does not end well, from the minimum of what is trusted.
-  if (!interrupted_ && suspicious) search();
-  if (best_.values.empty() && !dense_) best_ = optimize_without({});
-  if (!interrupted_ && suspicious && (dense_ || is_implausible() || has_many_outliers())) {
-    search_from_trusted(true);
-    if (!parallels_.empty()) search_from_trusted(false);
+  // 2. Grow a split from what is trusted. If that does not end well, narrow the loss, from the minimum of all edges
+  //    and from that of the trusted ones.
+  if (suspicious) {
+    from_trusted([&](std::vector<EdgePlace> out) {
+      judge(grown_from(std::move(out)));
+      cross_examine();
+    });
+    if (ends_badly(0)) {
+      graph_.set_values(of_all_edges);
+      apart([&] { search(); });
+    }
+    if (ends_badly(kManyOutliers)) {
+      from_trusted([&](std::vector<EdgePlace> out) {
+        judge(std::move(out));
+        search();
+      });
+    }
   }
-  if (best_.values.empty()) best_ = optimize_without(candidates_);
+  if (best_.values.empty()) {
+    if (!dense_) graph_.set_values(of_all_edges);
+    best_ = optimize_without(dense_ ? candidates_ : std::vector<EdgePlace>{});
+  }
   // 3. Doubt what was trusted: single edges, and all of them if they cost many of the others.
   for (int round = 0; round < kMaxDoubts && suspicious && options_.doubts_trusted && doubt_trusted(); ++round)
     search();
-  if (!interrupted_ && options_.doubts_trusted && suspicious && !dense_ && has_many_outliers()) {
+  if (options_.doubts_trusted && suspicious && ends_badly(kManyOutliers)) {
     graph_.set_values(of_all_edges);
     std::vector<EdgePlace> all = trusted_;
     std::erase_if(all, [&](EdgePlace place) {

@@ -20,13 +20,16 @@
 /// Trust is no certainty. Trusted edges that contradict each other between the same two places are
 /// candidates from the beginning. So are those that the best split contradicts (their error is beyond
 /// the quantile, widened if the errors of the trusted edges are larger than stated as a whole), if it
-/// becomes cheaper without them. If the kept edges still do not fit, or more than a fifth of the candidates
-/// are outliers, a split is grown from the trusted edges: those candidates return that agree with the rest, a
-/// few at a time, and first those whose place the rest knows best. The loss is not narrowed at all where all
-/// edges together would fill the factor. If that does not end well either, the search is repeated from the
-/// minimum of the trusted edges alone. If more than a fifth of the candidates are outliers, it is repeated
-/// without any trust: a wrong edge that alone joins two parts contradicts nothing, once all right ones
-/// between them are out. The cheapest split of all searches counts.
+/// becomes cheaper without them.
+///
+/// The first split is grown from the trusted edges: those candidates return that agree with the rest, a few at
+/// a time, and first those whose place the rest knows best. That takes a small part of the time of narrowing,
+/// because false edges do not fill the factor. The loss is narrowed if the kept edges do not fit, or if some
+/// outliers agree on one motion: they may be right. It is not narrowed where a step with all edges would take
+/// many seconds. If more than a fifth of the candidates are then outside and agree so, narrowing is repeated
+/// from the minimum of the trusted edges, and at last without any trust: a wrong edge that alone joins two
+/// parts contradicts nothing, once all right ones between them are out. The cheapest split of all searches
+/// counts.
 ///
 /// Ownership and threads are those of optimize(). The calling thread calls the trust rule.
 #pragma once

@@ -6,6 +6,7 @@
 #include <waymark/core/base/detail/disjoint_sets.hpp>
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/robust/detail/free_motions.hpp>
+#include <waymark/core/robust/detail/moved_errors.hpp>
 #include <waymark/core/robust/edge_selection.hpp>
 #include <waymark/core/robust/joining_edges.hpp>
 #include <waymark/core/system/detail/components.hpp>
@@ -160,19 +161,10 @@ class Rivals {
     const std::optional<FiniteMotion> motion = motion_by(edges_[decides]);
     if (!motion) return std::numeric_limits<double>::infinity();
     double sum = 0;
-    Eigen::VectorXd error;
-    std::vector<Eigen::MatrixXd> jacobians;
     for (const EdgePlace place : edges_) {
-      const std::vector<VertexIndex> moved = moved_of(place);
-      std::vector<std::vector<double>> before;
-      for (const VertexIndex v : moved) {
-        before.emplace_back(trial_.value(v).begin(), trial_.value(v).end());
-        detail::move(trial_, v, *motion);
-      }
-      const EdgeBatchBase& batch = graph_.batch(place.batch);
-      batch.linearize_edge(place.edge, trial_.view(), error, jacobians);
-      sum += std::sqrt(std::max(0.0, error.dot(batch.information(place.edge) * error)));
-      for (std::size_t k = 0; k < moved.size(); ++k) trial_.set_value(moved[k], before[k]);
+      const double squared = detail::squared_error_after(graph_.batch(place.batch), place.edge, trial_,
+                                                         moved_of(place), *motion);
+      sum += std::sqrt(std::max(0.0, squared));
     }
     return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
   }

@@ -251,6 +251,18 @@ TEST_CASE("graduation: false closures in groups are found even if they outnumber
   }
 }
 
+// A fixed pose makes its odometry a candidate, because a fixed vertex may be a claim about a place. It joins the rest.
+TEST_CASE("graduation: a split is grown from the odometry although its first pose is fixed") {
+  const TypeRegistry registry = full_registry();
+  Spoiled spoiled = spoiled_walk(130, false, 2);
+  spoiled.graph.set_fixed(0, true);
+  spoiled.without.set_fixed(0, true);
+  const Score score = graduate_and_score(spoiled, "walk, first pose fixed", registry);
+  CHECK(score.precision == 1);
+  CHECK(score.recall == 1);
+  CHECK(score.result.rounds == 0);  // what is grown fits, so that nothing has to be narrowed
+}
+
 TEST_CASE("graduation: a false closure beside the odometry of neighbours is found, and the odometry stays") {
   const TypeRegistry registry = full_registry();
   for (const VertexIndex from : {75, 200, 301}) {
@@ -540,6 +552,12 @@ TEST_CASE("graduation: chi-square quantiles are those of the tables") {
   CHECK(chi_square_quantile(0.99, 3) == Approx(11.344866730144373));
   CHECK(chi_square_quantile(0.99, 10) == Approx(23.209251158954356));
   CHECK(chi_square_tail(0, 5) == Approx(1));
+  // Of a million edges: Wilson and Hilferty, PNAS 1931, with the normal quantile 3.719016.
+  for (const int freedom : {2000, 9001, 3'000'000}) {
+    const double spread = 2.0 / 9 / freedom;
+    const double expected = freedom * std::pow(1 - spread + 3.719016 * std::sqrt(spread), 3);
+    CHECK(chi_square_quantile(0.9999, freedom) == Approx(expected).epsilon(3e-5));
+  }
 }
 
 }  // namespace graduation_test

@@ -1,0 +1,50 @@
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include <waymark/core/robust/detail/moved_errors.hpp>
+
+namespace waymark::detail {
+
+double squared_error_after(const EdgeBatchBase& batch, std::size_t edge, Graph& graph,
+                           std::span<const VertexIndex> moved, const FiniteMotion& motion) {
+  std::vector<std::vector<double>> before;
+  for (const VertexIndex v : moved) {
+    before.emplace_back(graph.value(v).begin(), graph.value(v).end());
+    move(graph, v, motion);
+  }
+  Eigen::VectorXd error;
+  std::vector<Eigen::MatrixXd> jacobians;
+  batch.linearize_edge(edge, graph.view(), error, jacobians);
+  for (std::size_t i = 0; i < moved.size(); ++i) graph.set_value(moved[i], before[i]);
+  return error.dot(batch.information(edge) * error);
+}
+
+std::size_t most_that_agree(const Graph& graph, std::span<const EdgePlace> edges, double bound) {
+  constexpr std::size_t kComparisons = 300'000;
+  std::vector<EdgePlace> pairs;
+  for (const EdgePlace place : edges) {
+    if (graph.batch(place.batch).vertices(place.edge).size() == 2) pairs.push_back(place);
+  }
+  const auto later_end = [&](EdgePlace place) {
+    const std::span<const VertexIndex> ends = graph.batch(place.batch).vertices(place.edge);
+    return std::array{std::max(ends[0], ends[1])};
+  };
+  Graph trial = graph;
+  std::size_t most = 0;
+  const std::size_t stride = 1 + pairs.size() * pairs.size() / kComparisons;
+  for (std::size_t i = 0; i < pairs.size(); i += stride) {
+    const EdgeBatchBase& batch = graph.batch(pairs[i].batch);
+    const std::optional<FiniteMotion> motion =
+        motion_to_agree(batch, pairs[i].edge, trial, later_end(pairs[i]));
+    if (!motion) continue;
+    const auto agrees = [&](EdgePlace place) {
+      const EdgeBatchBase& other = graph.batch(place.batch);
+      return squared_error_after(other, place.edge, trial, later_end(place), *motion) <= bound;
+    };
+    most = std::max(most, static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), agrees)));
+  }
+  return most;
+}
+
+}  // namespace waymark::detail
