@@ -5,6 +5,7 @@
 #include <complex>
 
 #include <fmt/format.h>
+#include <Eigen/Cholesky>
 
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/tools/drive/logs/time_series.hpp>
@@ -50,18 +51,24 @@ double median_yaw_rate_at_rest(std::span<const OdometrySample> odometry) {
   return upper_median(std::move(readings));
 }
 
+/// How the yaw rate of an odometry drifts from that of the vehicle.
+struct Drift {
+  double radps = 0;  ///< bias of a gyro
+  double radpm = 0;  ///< turns of wheels whose radii differ, or of a steering angle that is off
+};
+
 /// Positions of the odometry at its samples, from the origin.
-std::vector<Complex> positions_of(std::span<const OdometrySample> odometry) {
-  const double bias = median_yaw_rate_at_rest(odometry);
+std::vector<Complex> positions_of(std::span<const OdometrySample> odometry, const Drift& drift) {
   std::vector<Complex> positions(1);
   double heading = 0;
   for (std::size_t i = 1; i < odometry.size(); ++i) {
     const OdometrySample& a = odometry[i - 1];
     const OdometrySample& b = odometry[i];
     const double dt = seconds_between(a.stamp, b.stamp);
-    const double turn = dt * (0.5 * (a.yaw_rate_radps + b.yaw_rate_radps) - bias);
-    positions.push_back(positions.back() +
-                        std::polar(0.5 * dt * (a.speed_mps + b.speed_mps), heading + 0.5 * turn));
+    const double length = 0.5 * dt * (a.speed_mps + b.speed_mps);
+    const double turn =
+        dt * (0.5 * (a.yaw_rate_radps + b.yaw_rate_radps) - drift.radps) - length * drift.radpm;
+    positions.push_back(positions.back() + std::polar(length, heading + 0.5 * turn));
     heading += turn;
   }
   return positions;
@@ -71,7 +78,17 @@ std::vector<Complex> positions_of(std::span<const OdometrySample> odometry) {
 class Comparison {
  public:
   Comparison(std::span<const OdometrySample> odometry, std::span<const Fix> fixes)
-      : odometry_(odometry), fixes_(fixes_for_motion(fixes)), positions_(positions_of(odometry)) {}
+      : odometry_(odometry), fixes_(fixes_for_motion(fixes)) {
+    drift_.radps = median_yaw_rate_at_rest(odometry);
+    reckon();
+  }
+
+  /// Removes more drift from the odometry.
+  void remove(const Drift& more) {
+    drift_.radps += more.radps;
+    drift_.radpm += more.radpm;
+    reckon();
+  }
 
   /// Tells whether the fixes about a time are as near to each other as they claim.
   [[nodiscard]] bool stays(Stamp from, Stamp to) const {
@@ -129,6 +146,7 @@ class Comparison {
   }
 
  private:
+  void reckon() { positions_ = positions_of(odometry_, drift_); }
   [[nodiscard]] std::vector<Fix>::const_iterator first_since(Stamp moment) const {
     return std::lower_bound(fixes_.begin(), fixes_.end(), moment,
                             [](const Fix& fix, Stamp stamp) { return fix.stamp < stamp; });
@@ -149,8 +167,72 @@ class Comparison {
 
   std::span<const OdometrySample> odometry_;
   std::vector<Fix> fixes_;
+  Drift drift_;
   std::vector<Complex> positions_;
 };
+
+/// How far the odometry turned from the fixes, between two times.
+struct Drifted {
+  double turn_rad = 0;
+  double duration_s = 0;
+  double length_m = 0;
+};
+
+/// Compares short times that follow each other while the vehicle moves. It does not matter whether it reverses.
+std::vector<Drifted> drifted_of(std::span<const OdometrySample> odometry, const Comparison& comparison) {
+  constexpr double kShort_s = 10;
+  std::vector<Drifted> result;
+  Alignment before;
+  std::size_t first_before = 0;
+  for (std::size_t first = 0; first < odometry.size();) {
+    std::size_t last = first;
+    bool moves = true;
+    while (last + 1 < odometry.size() &&
+           seconds_between(odometry[first].stamp, odometry[last].stamp) < kShort_s)
+      moves = odometry[++last].speed_mps >= kStands && moves;
+    if (last == first) break;
+    const Alignment here =
+        moves ? comparison.alignment(odometry[first].stamp, odometry[last].stamp) : Alignment{};
+    if (here.weight_m > 0 && before.weight_m > 0)
+      result.push_back({-std::arg(here.turn * std::conj(before.turn)),
+                        0.5 * seconds_between(odometry[first_before].stamp, odometry[last].stamp),
+                        0.5 * comparison.length_m(first_before, last)});
+    before = here;
+    first_before = first;
+    first = last;
+  }
+  return result;
+}
+
+/// Returns the drift that explains the turns with the least sum of remainders, near none if they do not tell it.
+/// @param has_bias false: only turns per metre
+Drift drift_of(std::span<const Drifted> turns, bool has_bias) {
+  constexpr int kRounds = 20;
+  constexpr double kNoise_rad = 0.1;
+  const Eigen::Vector2d usual(has_bias ? 0.05 : 1e-6, 0.01);  // rad/s, rad/m
+  Eigen::Vector2d drift = Eigen::Vector2d::Zero();
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix2d information = usual.cwiseAbs2().cwiseInverse().asDiagonal();
+    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    for (const Drifted& turn : turns) {
+      const Eigen::Vector2d row(turn.duration_s, turn.length_m);
+      const double weight = 1 / (kNoise_rad * std::max(kNoise_rad, std::abs(turn.turn_rad - row.dot(drift))));
+      information += weight * row * row.transpose();
+      right += weight * turn.turn_rad * row;
+    }
+    drift = information.ldlt().solve(right);
+  }
+  return {drift.x(), drift.y()};
+}
+
+/// Compares them after the drift is removed, which may turn the way after a stop against the one before.
+Comparison comparison_without_drift(std::span<const OdometrySample> odometry, std::span<const Fix> fixes) {
+  constexpr int kTimes = 2;  // the second time with straighter pieces
+  Comparison comparison(odometry, fixes);
+  const bool has_bias = !yaw_rate_at_rest(odometry).is_derived();
+  for (int k = 0; k < kTimes; ++k) comparison.remove(drift_of(drifted_of(odometry, comparison), has_bias));
+  return comparison;
+}
 
 /// Returns for each sample how many silences of the odometry were before it in which the vehicle may have moved.
 /// How it turned then is not known, so the frames of the odometry before and after are two.
@@ -226,7 +308,7 @@ std::vector<Reversing> find_reversing(std::span<const OdometrySample> odometry, 
   const bool has_sign = std::any_of(odometry.begin(), odometry.end(),
                                     [](const OdometrySample& sample) { return sample.speed_mps < 0; });
   if (has_sign || fixes.empty()) return {};
-  std::vector<Way> ways = ways_of(odometry, Comparison(odometry, fixes));
+  std::vector<Way> ways = ways_of(odometry, comparison_without_drift(odometry, fixes));
   // Each turn makes the whole fit better, so that the loop ends.
   for (std::size_t turns = 0; turns < ways.size(); ++turns) {
     std::size_t worst = ways.size();

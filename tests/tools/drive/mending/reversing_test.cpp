@@ -29,14 +29,15 @@ double yaw_rate_at(double t) {
   return std::abs(signed_speed(t, -1)) > 0 ? 0.06 * std::sin(0.11 * t) : 0;
 }
 
-WindingScene scene(int backwards) {
+/// @param bias_radps of the gyro @param turns_radpm of an odometry whose wheels differ
+WindingScene scene(int backwards, double bias_radps = 0.003, double turns_radpm = 0) {
   WindingScene result = winding_scene(
       225, [&](double t) { return signed_speed(t, backwards); }, yaw_rate_at);
   std::mt19937_64 random(5);
   std::normal_distribution<double> gyro(0, 0.002);
   for (OdometrySample& sample : result.odometry) {
     sample.speed_mps = std::abs(sample.speed_mps);
-    sample.yaw_rate_radps += 0.003 + gyro(random);
+    sample.yaw_rate_radps += bias_radps + turns_radpm * sample.speed_mps + gyro(random);
   }
   return result;
 }
@@ -69,6 +70,25 @@ TEST_CASE("reversing: a drive forwards has none, also with fixes of 3 m") {
     fix.covariance = 9 * Eigen::Matrix2d::Identity();
   }
   CHECK(find_reversing(made.odometry, made.fixes).empty());
+}
+
+TEST_CASE("reversing: an odometry that turns all the time drives no way backwards, and hides none") {
+  const auto [bias_radps, turns_radpm] = GENERATE(
+      table<double, double>({{0.1, 0.0}, {-0.1, 0.0}, {0.003, 0.01}, {0.003, -0.015}, {0.05, -0.01}}));
+  // the gyro never rests: its bias is not known from stops
+  const auto moving = [&](int backwards) {
+    WindingScene made = scene(backwards, bias_radps, turns_radpm);
+    std::erase_if(made.odometry, [](const OdometrySample& sample) { return sample.speed_mps == 0; });
+    return made;
+  };
+  WindingScene forwards = moving(-1);
+  CHECK(find_reversing(forwards.odometry, forwards.fixes).empty());
+  WindingScene reverses = moving(2);
+  const std::vector<Reversing> found = find_reversing(reverses.odometry, reverses.fixes);
+  REQUIRE(found.size() == 1);
+  CHECK(reverses.odometry[found[0].first].stamp.seconds() ==
+        Approx(90).margin(5.2));  // the stop has no samples
+  CHECK(reverses.odometry[found[0].last].stamp.seconds() == Approx(130).margin(5.2));
 }
 
 TEST_CASE("reversing: a turn while the odometry was silent is no drive backwards") {
