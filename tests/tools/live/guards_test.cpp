@@ -6,10 +6,12 @@
 
 #include <catch2/catch.hpp>
 
+#include <waymark/tools/live/estimator/fix_judge.hpp>
 #include <waymark/tools/live/estimator/guards/receiver_comparison.hpp>
 #include <waymark/tools/live/estimator/guards/speed_guard.hpp>
 
 #include "live_drive.hpp"
+#include "support/registry.hpp"
 
 namespace guards_test {
 
@@ -186,6 +188,27 @@ TEST_CASE("receivers that differ for minutes by more than they claim are told on
   CHECK(said.count("receivers") <= 2);
   for (const Event& event : said.events)
     if (event.kind == "receivers") CHECK(event.text.find("two") != std::string::npos);
+}
+
+TEST_CASE("a receiver's usual claim is that of the drive so far, not of the last minutes", "[live]") {
+  const drive::DriveDescription description = waymark_test::live_description();
+  const drive::FusionSettings settings = waymark_test::live_fusion();
+  const LiveSettings live;
+  FixJudge judge(description, settings, live, waymark_test::registry());
+  double stamp_s = 1000;
+  const auto usual_after = [&](int fixes, double accuracy_m) {
+    ClaimedAccuracies claims;
+    for (int i = 0; i < fixes; ++i) {
+      Fix fix;
+      fix.stamp = Stamp::from_seconds(stamp_s += 0.2);
+      fix.covariance = accuracy_m * accuracy_m * Eigen::Matrix2d::Identity();
+      claims = judge.accept(fix);
+    }
+    return claims.reference_m();
+  };
+  CHECK(usual_after(5000, 0.02) == Approx(0.02));
+  CHECK(usual_after(4800, 1.5) == Approx(0.02));
+  CHECK(usual_after(400, 1.5) == Approx(1.5));
 }
 
 }  // namespace guards_test

@@ -107,6 +107,20 @@ TEST_CASE("a live estimate learns the noise of its drive, and is better for it",
   CHECK(radius(learned) < 0.5 * radius(stated));
 }
 
+TEST_CASE("a pause forgets nothing of what was learned", "[live]") {
+  const LiveDrive drive = white_drive(0.05, 300);
+  const auto last_radius = [&](double pause_s) {
+    Arrivals arrivals = drive.arrivals;
+    for (Sample& sample : arrivals)
+      if (stamp_of(sample) > drive.simulated.poses.front().stamp.later(220))
+        std::visit([&](auto& of) { of.stamp = of.stamp.later(pause_s); }, sample);
+    const Said said = listen(live_description(), arrivals, {}, settings_of(true));
+    CHECK(said.counts.resets == (pause_s > 0 ? 1 : 0));
+    return said.poses.back().radius95_m;
+  };
+  CHECK(last_radius(650) < 1.3 * last_radius(0));
+}
+
 TEST_CASE("what is learned beside the estimate, in a thread or at once, is the same to the last bit",
           "[live]") {
   const LiveDrive drive = live_drive("urban", 200);

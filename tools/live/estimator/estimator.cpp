@@ -170,8 +170,11 @@ void Estimator::work() {
     reset("jump", fmt::format("the clock of the odometry has jumped by {:.3f} s",
                               seconds_between(jump->from, jump->to)));
     forget_motion();
-    so_far_.clear();
-    learner_.forget();
+    // After a pause the drive so far is still one drive with a gap. Times that come again are not.
+    if (jump->to < jump->from) {
+      so_far_.clear();
+      learner_.forget();
+    }
   }
   while (std::optional<Sample> sample = intake_.next()) {
     so_far_.take(*sample);

@@ -153,16 +153,26 @@ std::string FixJudge::reason_against(const Fix& fix, const Reckoning& reckoning,
 ClaimedAccuracies FixJudge::accept(const Fix& fix) {
   for (auto& [source, other] : receivers_) other.elsewhere.clear();
   Receiver& receiver = receivers_[fix.source];
-  std::vector<Fix>& used = receiver.used;
-  used.push_back(fix);
-  if (used.size() > 2 * kClaims) used.erase(used.begin(), used.end() - kClaims);
   receiver.left.reset();
   if (!receiver.agrees_since) receiver.agrees_since = fix.stamp;
   if (residual_ && (receiver.agreed.empty() || receiver.agreed.back().stamp < fix.stamp)) {
     receiver.agreed.push_back(*residual_);
     while (seconds_between(receiver.agreed.front().stamp, fix.stamp) > kAgreed_s) receiver.agreed.pop_front();
   }
-  return claimed_accuracies(used);
+  return claims_with(fix, receiver);
+}
+
+// The claims so far stand for the whole drive: those of the last minutes would make a bad time the usual one.
+ClaimedAccuracies FixJudge::claims_with(const Fix& fix, Receiver& receiver) {
+  std::vector<Fix>& used = receiver.used;
+  used.push_back(fix);
+  const ClaimedAccuracies claims = claimed_accuracies(used);
+  if (receiver.used_count++ % receiver.used_each != 0) used.pop_back();
+  if (used.size() < 2 * kClaims) return claims;
+  for (std::size_t i = 0; i < kClaims; ++i) used[i] = used[2 * i];
+  used.resize(kClaims);
+  receiver.used_each *= 2;
+  return claims;
 }
 
 bool FixJudge::convinces(const Fix& fix, const Reckoning& reckoning) {

@@ -32,7 +32,7 @@ class FixJudge {
   /// Returns why a fix cannot be right: "frozen", "jump", "absurd", or the gate's reason; empty if it may be.
   /// @param window null: there is no estimate yet
   [[nodiscard]] std::string reason_against(const Fix& fix, const Reckoning& reckoning, const Window* window);
-  /// Takes a fix that may be right. @returns what its receiver has claimed lately
+  /// Takes a fix that may be right. @returns what its receiver has claimed so far
   [[nodiscard]] ClaimedAccuracies accept(const Fix& fix);
   /// Takes a fix that is elsewhere: a jump, or absurd. @returns whether so many in a row agree with each other,
   /// for so long, that it is the estimate which is wrong
@@ -58,7 +58,9 @@ class FixJudge {
     double doubted_s = 0;                  // so long fixes that are elsewhere are not believed
     std::optional<Residual> left{};        // the first of the last fixes, which are elsewhere
     std::vector<Fix> elsewhere{};          // the last ones in a row, while none of any receiver is used
-    std::vector<Fix> used;                 // the last ones: their claims
+    std::vector<Fix> used;                 // evenly over the drive: their claims
+    std::size_t used_each = 1;             // fixes for one of them
+    std::size_t used_count = 0;            // fixes that were used
     std::deque<Fix> judged;                // the last seconds, all of them, with the dead reckoning
     std::deque<Eigen::Vector3d> reckoned;  // antenna at these
     std::optional<std::int64_t> period;    // of the last one that was taken
@@ -66,6 +68,7 @@ class FixJudge {
     double still_way_m = 0;                // of the odometry when it began
   };
 
+  [[nodiscard]] static ClaimedAccuracies claims_with(const Fix& fix, Receiver& receiver);
   [[nodiscard]] std::string judged_by_gate(const Fix& fix, const Reckoning& reckoning);
   [[nodiscard]] bool repeats(const Fix& fix, const Reckoning& reckoning);
   [[nodiscard]] bool is_absurd(const Eigen::Vector2d& off, const Fix& fix, const Window& window) const;

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kGrowth = 1.5;             // of the drive, until the next search
 constexpr double kRarest_s = 600;           // between two searches
+constexpr double kLeastShare = 0.5;         // of the drive of the last search, to be worth another one
 constexpr double kAllowed_s = 10;           // for a search, at least
 constexpr double kAllowedShare = 1.0 / 15;  // of the drive, for a search in it
 
@@ -18,11 +19,13 @@ struct Stopped {};
 
 bool Learner::is_due(Stamp now, double length_s) const {
   if (future_.valid()) return false;
-  return length_s >= next_s_ || (last_ && seconds_between(*last_, now) >= kRarest_s);
+  const bool tells_as_much = length_s >= kLeastShare * last_length_s_;
+  return length_s >= next_s_ || (last_ && tells_as_much && seconds_between(*last_, now) >= kRarest_s);
 }
 
 void Learner::begin(Stamp now, double length_s, Work work) {
   last_ = now;
+  last_length_s_ = length_s;
   ready_ = now.later(std::max(kAllowed_s, kAllowedShare * length_s));
   next_s_ = std::max(next_s_, length_s) * kGrowth;
   stop_ = std::make_shared<std::atomic<bool>>(false);

@@ -1,7 +1,7 @@
 /// When a live estimate learns from its drive, and the work beside it.
 ///
 /// A search begins a minute after the drive did, and again whenever the drive is half as long again, at least
-/// every ten minutes. What it finds is used later, by the clock of the drive: after ten seconds, or a fifteenth
+/// every ten minutes unless less than half of that is remembered. What it finds is used later, by the clock of the drive: after ten seconds, or a fifteenth
 /// of the drive. However long it took, a replay says the same. If it took longer, the estimate waits for it.
 #pragma once
 
@@ -47,6 +47,7 @@ class Learner {
   Stamp ready_;                  // when its result is used
   double next_s_ = 60;           // length of the drive at the next search
   std::optional<Stamp> last_{};  // when the last search began
+  double last_length_s_ = 0;     // of the drive then
 };
 
 }  // namespace waymark::live
