@@ -41,8 +41,9 @@ std::optional<ClockOffset> logged_offset(const LoggedMotion& motion) {
 /// Returns why no fixes, or few, lie within the odometry.
 std::string explanation(const LoggedMotion& motion, const std::optional<ClockOffset>& offset) {
   if (offset)
-    return fmt::format("the motion of both fits if the odometry's clock is {:.2f} s late{}: {}",
-                       offset->late_s, offset_in_words(*offset), remedy(*offset));
+    return fmt::format("the motion of both fits if the odometry's clock is {:.2f} s {}{}: {}",
+                       std::abs(offset->late_s), offset->late_s < 0 ? "early" : "late",
+                       offset_in_words(*offset), remedy(*offset));
   const double apart = seconds_between(motion.fixes.front().stamp, motion.odometry().front().stamp);
   const std::string name = name_of_offset(apart, 600);
   if (!name.empty()) return fmt::format("they begin {:.0f} s apart, which is near {}", apart, name);
@@ -125,13 +126,17 @@ bool is_another_clock(const PreparedDrive& drive, const ClockOffset& offset) {
                           kStands_mps, {});
 }
 
-/// Returns what else may be the reason that an odometry seems late by less than two seconds; empty: nothing.
-std::string other_reason(const ClockOffset& offset, const PreparedDrive& drive) {
-  if (offset.late_s < 0 || offset.late_s > kOneClock_s || yaw_rate_is_late(drive.odometry, drive.fixes))
-    return "";
+/// Returns what to state if an odometry seems late or early, for each reason that the drive cannot exclude.
+std::string remedies(const ClockOffset& offset, bool may_be_speed_alone) {
+  if (offset.late_s < 0 && offset.late_s > -kOneClock_s)
+    return fmt::format(
+        "state 'delay: {:.2f}' for the receiver if its fixes come late (the usual latency); if the odometry's "
+        "clock is wrong, {}",
+        -offset.late_s, remedy(offset));
+  if (!may_be_speed_alone) return remedy(offset);
   return fmt::format(
-      "; or 'speed_delay: {:.2f}' if its speed alone is late (OBD, CAN): the turns do not tell which",
-      offset.late_s);
+      "{}; or 'speed_delay: {:.2f}' if its speed alone is late (OBD, CAN): the turns do not tell which",
+      remedy(offset), offset.late_s);
 }
 
 /// What was found about the only odometry. It is told once nothing is moved any more: a drive that is prepared again
@@ -152,9 +157,10 @@ void treat_clock(const ClockOffset& offset, const DriveLogs& logs, DriveDescript
     drive = prepare_drive(logs, description);
     cure = "its stamps are moved by that; " + statement(offset);
   } else {
-    const std::string reason = other_reason(offset, drive);
-    found.tells_late_quantity |= !reason.empty();
-    cure = remedy(offset) + reason;
+    const bool may_be_speed_alone =
+        offset.late_s >= 0 && offset.late_s <= kOneClock_s && !yaw_rate_is_late(drive.odometry, drive.fixes);
+    found.tells_late_quantity |= may_be_speed_alone;
+    cure = remedies(offset, may_be_speed_alone);
   }
   found.warnings.push_back(clock_warning("the odometry", offset, cure));
 }

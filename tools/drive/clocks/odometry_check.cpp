@@ -208,9 +208,9 @@ std::optional<ClockOffset> offset_shown(const std::vector<OdometrySample>& odome
 }
 
 std::string clock_warning(const std::string& odometry, const ClockOffset& offset, const std::string& cure) {
-  return fmt::format("{}'s clock seems {:.2f} +- {:.2f} s late against the fixes{}, correlation {:.3f}: {}",
-                     odometry, offset.late_s, std::hypot(offset.sigma_s, kSmoothing_s),
-                     offset_in_words(offset), offset.correlation, cure);
+  return fmt::format("{}'s clock seems {:.2f} +- {:.2f} s {} against the fixes{}, correlation {:.3f}: {}",
+                     odometry, std::abs(offset.late_s), std::hypot(offset.sigma_s, kSmoothing_s),
+                     offset.late_s < 0 ? "early" : "late", offset_in_words(offset), offset.correlation, cure);
 }
 
 OdometryCheck check_odometries(const PreparedDrive& drive, const std::set<std::string>& suspects) {
