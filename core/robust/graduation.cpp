@@ -4,6 +4,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -81,9 +82,10 @@ class Graduation {
   void from_trusted(Search search);
   template <typename Search>
   void apart(Search search);
-  std::vector<EdgePlace> grown_from(std::vector<EdgePlace> out);
+  std::optional<std::vector<EdgePlace>> grown_from(std::vector<EdgePlace> out);
   std::vector<EdgePlace> contradicted(std::span<const EdgePlace> trusted) const;
   std::vector<EdgePlace> kept_and_trusted() const;
+  std::vector<EdgePlace> unconfirmed() const;
   bool doubt_trusted();
   bool is_dense() const;
   bool may_be_grown(const Graph& trusted) const;
@@ -209,7 +211,8 @@ void Graduation::search() {
   cross_examine();
 }
 
-// Calls a search with all candidates outside, but one edge of each group of parallel ones: the first one, then the last.
+// Calls a search with all candidates outside, but one edge of each group of parallel ones: the first one, then
+// the last.
 template <typename Search>
 void Graduation::from_trusted(Search search) {
   for (const bool first : {true, false}) {
@@ -260,6 +263,10 @@ bool Graduation::may_be_grown(const Graph& first) const {
 bool Graduation::outliers_agree(double share) const {
   const double many = share * static_cast<double>(candidates_.size());
   if (static_cast<double>(best_.outliers.size()) <= std::max(kFewOutliers, many)) return false;
+  const bool are_pairs = std::all_of(best_.outliers.begin(), best_.outliers.end(), [&](EdgePlace place) {
+    return graph_.batch(place.batch).vertices(place.edge).size() == 2;
+  });
+  if (!are_pairs) return true;  // what they want is not compared
   Graph at_best = graph_;
   at_best.set_values(best_.values);
   const double wide = 4 * chi_square_quantile(options_.inlier_probability, 3);
@@ -269,12 +276,12 @@ bool Graduation::outliers_agree(double share) const {
 // Returns the outliers that remain if those that agree with the rest return, a share of them at a time. Those
 // that the rest predicts most surely come first: others may agree by chance, and once their betters are in,
 // they do not. What nothing joins is joined by one edge before.
-std::vector<EdgePlace> Graduation::grown_from(std::vector<EdgePlace> out) {
+std::optional<std::vector<EdgePlace>> Graduation::grown_from(std::vector<EdgePlace> out) {
   constexpr int kMaxSplits = 1000;
   constexpr std::size_t kShare = 10;
   constexpr double kTogether = 2;  // of the looseness, between the first and the last that return at a time
   out = without_joining(out);
-  if (!may_be_grown(without_edges(graph_, out))) return out;
+  if (!may_be_grown(without_edges(graph_, out))) return std::nullopt;
   std::vector<EdgePlace> refused;  // had returned, and were contradicted by others
   for (int split = 0; split < kMaxSplits; ++split) {
     Verdict verdict;
@@ -489,6 +496,27 @@ std::vector<EdgePlace> Graduation::kept_and_trusted() const {
   return result;
 }
 
+// Returns the candidates inside that no other edge checks, although outliers join the same parts elsewhere.
+std::vector<EdgePlace> Graduation::unconfirmed() const {
+  constexpr double kUnchecked = 1e-6;
+  constexpr std::size_t kMostTried = 100;  // each takes a look at the whole graph
+  std::vector<EdgePlace> result;
+  if (best_.outliers.empty()) return result;
+  const std::vector<EdgePlace> members = inside(best_);
+  const std::vector<Innovation> innovation =
+      innovations(graph_, members, Membership::inside, without_edges(graph_, best_.outliers));
+  std::size_t tried = 0;
+  for (std::size_t i = 0; i < members.size() && tried < kMostTried; ++i) {
+    if (!(innovation[i].squared <= kUnchecked)) continue;
+    ++tried;
+    std::vector<EdgePlace> outside = best_.outliers;
+    outside.insert(std::lower_bound(outside.begin(), outside.end(), members[i]), members[i]);
+    const Graph parts = without_edges(graph_, outside);
+    if (!joining_edges(graph_, best_.outliers, parts).empty()) result.push_back(members[i]);
+  }
+  return result;
+}
+
 // Makes candidates of the trusted edges that the best split contradicts most.
 // @return there is a cheaper split now
 bool Graduation::doubt_trusted() {
@@ -510,8 +538,8 @@ bool Graduation::is_implausible() const {
   for (const EdgePlace place : trusted_) freedom += graph_.batch(place.batch).error_dimension(place.edge);
   for (const EdgePlace place : inside(best_))
     freedom += graph_.batch(place.batch).error_dimension(place.edge);
-  return freedom > 0 && best_.summary.final_chi2 >
-                            chi_square_quantile(options_.inlier_probability, static_cast<int>(freedom));
+  return freedom > 0 && chi_square_tail(best_.summary.final_chi2, static_cast<int>(freedom)) <
+                            1 - options_.inlier_probability;
 }
 
 GraduationResult Graduation::run() {
@@ -532,7 +560,9 @@ GraduationResult Graduation::run() {
   //    and from that of the trusted ones.
   if (suspicious) {
     from_trusted([&](std::vector<EdgePlace> out) {
-      judge(grown_from(std::move(out)));
+      std::optional<std::vector<EdgePlace>> grown = grown_from(std::move(out));
+      if (!grown) return;
+      judge(std::move(*grown));
       cross_examine();
     });
     if (ends_badly(0)) {
@@ -541,6 +571,7 @@ GraduationResult Graduation::run() {
     }
     if (ends_badly(kManyOutliers)) {
       from_trusted([&](std::vector<EdgePlace> out) {
+        std::erase(judged_, out);  // its minimum is where this search begins
         judge(std::move(out));
         search();
       });
@@ -548,12 +579,12 @@ GraduationResult Graduation::run() {
   }
   if (best_.values.empty()) {
     if (!dense_) graph_.set_values(of_all_edges);
-    best_ = optimize_without(dense_ ? candidates_ : std::vector<EdgePlace>{});
+    best_ = optimize_without(dense_ ? without_joining(candidates_) : std::vector<EdgePlace>{});
   }
   // 3. Doubt what was trusted: single edges, and all of them if they cost many of the others.
   for (int round = 0; round < kMaxDoubts && suspicious && options_.doubts_trusted && doubt_trusted(); ++round)
     search();
-  if (options_.doubts_trusted && suspicious && ends_badly(kManyOutliers)) {
+  if (!interrupted_ && !dense_ && options_.doubts_trusted && suspicious && outliers_agree(kManyOutliers)) {
     graph_.set_values(of_all_edges);
     std::vector<EdgePlace> all = trusted_;
     std::erase_if(all, [&](EdgePlace place) {
@@ -568,6 +599,7 @@ GraduationResult Graduation::run() {
   }
   result_.candidates = candidates_.size();
   result_.contradicted = contradicted(kept_and_trusted());
+  result_.unconfirmed = unconfirmed();
   result_.outliers = std::move(best_.outliers);
   std::copy_if(result_.outliers.begin(), result_.outliers.end(), std::back_inserter(result_.distrusted),
                [&](EdgePlace place) { return options_.trusted(graph_, place); });

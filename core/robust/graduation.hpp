@@ -11,9 +11,9 @@
 /// graph just inside the gate. The verdict does not use a loss. Over splits of the candidates into
 /// kept edges and outliers it minimises
 ///   cost = chi2 at the minimum of the kept edges + chi-square quantile of each outlier
-/// (truncated least squares). The first split follows from the errors of the edges. Then the cost
-/// is lowered edge by edge: an outlier returns if its innovation (edge_selection.hpp) is within the
-/// quantile, and a kept edge beyond it goes. The best width depends on how accurate the stated
+/// (truncated least squares). A first split is grown, or follows from the errors of the edges. Then
+/// the cost is lowered edge by edge: an outlier returns if its innovation (edge_selection.hpp) is
+/// within the quantile, and a kept edge beyond it goes. The best width depends on how accurate the stated
 /// noise is. So there are verdicts at stretch 16, 4 and 1 of the last width, and the one with the
 /// lowest cost counts.
 ///
@@ -67,10 +67,12 @@ struct GraduationResult {
   std::vector<EdgePlace> distrusted;  ///< those of them that the rule trusts
   std::vector<EdgePlace>
       contradicted;  ///< kept edges that the rule trusts and the other kept ones contradict
+  /// kept candidates that alone join two parts which outliers would join elsewhere: nothing confirms them
+  std::vector<EdgePlace> unconfirmed;
   /// Per batch and edge: the weight from the loss at its final width; 1 for trusted edges.
   std::vector<std::vector<double>> weights;
   std::size_t candidates = 0;
-  /// rounds of narrowing; 0: at the minimum of all edges none was beyond its quantile
+  /// rounds of narrowing; 0: no edge was beyond its quantile, or what was grown from the trusted edges fits
   int rounds = 0;
   int passes = 0;      ///< splits whose minimum was computed
   int iterations = 0;  ///< steps of all optimisations

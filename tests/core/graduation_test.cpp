@@ -353,6 +353,29 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("graduation: of false edges that alone join two parts, the one that stays is told") {
+  const TypeRegistry registry = full_registry();
+  Graph graph = grid_walk(400, 12, 7);
+  std::vector<EdgePlace> between;  // the first half and the second one
+  for (std::size_t e = 0; e < graph.batch(0).size(); ++e) {
+    const auto vertices = graph.batch(0).vertices(e);
+    if ((vertices[0] < 200) != (vertices[1] < 200)) between.push_back({0, e});
+  }
+  graph = without_edges(graph, between);
+  const auto add = [&](VertexIndex from, VertexIndex to, const Eigen::Vector3d& z) {
+    graph.add_edge(EdgeSe2{z}, {from, to}, pose_information(0.02, 0.005));
+  };
+  // three edges between the two walks of which no two agree
+  add(20, 320, {3, -4, 1});
+  add(90, 380, {-11, 7, 2});
+  add(150, 220, {25, 31, -2});
+  const auto algorithm = registry.make_algorithm("dogleg");
+  const auto solver = registry.make_linear_solver("eigen");
+  const GraduationResult result = graduate(graph, *algorithm, *solver, {});
+  CHECK(result.outliers.size() == 2);
+  CHECK(result.unconfirmed.size() == 1);
+}
+
 TEST_CASE("graduation: where no edge is beyond its quantile nothing is done but the optimisation") {
   const TypeRegistry registry = full_registry();
   const Score score = graduate_and_score(spoiled_walk(0, false, 4), "walk", registry);

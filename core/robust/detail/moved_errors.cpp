@@ -28,7 +28,7 @@ std::size_t most_that_agree(const Graph& graph, std::span<const EdgePlace> edges
   }
   const auto later_end = [&](EdgePlace place) {
     const std::span<const VertexIndex> ends = graph.batch(place.batch).vertices(place.edge);
-    return std::array{std::max(ends[0], ends[1])};
+    return std::array{graph.id(ends[0]) < graph.id(ends[1]) ? ends[1] : ends[0]};
   };
   Graph trial = graph;
   std::size_t most = 0;
