@@ -100,10 +100,11 @@ void add_accuracy(Text& text, const FixSummary& fixes) {
   };
   const std::size_t usual = fixes_with_usual_sigma(fixes);
   if (lacking > usual)
-    line(lacking - usual == fixes.fixes
-             ? "the log has none: state a 'default_sigma' (or, with HDOP, a 'range_error') to use it as gnss"
-             : fmt::format("{} of {} fixes have none: state a 'default_sigma' for them", lacking - usual,
-                           fixes.fixes));
+    line(
+        lacking - usual == fixes.fixes
+            ? "the log has none: state 'accuracy: {default_sigma: ...}' (or, with HDOP, a 'range_error') to use it as gnss"
+            : fmt::format("{} of {} fixes have none: state 'accuracy: {{default_sigma: ...}}' for them",
+                          lacking - usual, fixes.fixes));
   if (usual > 0)
     line(fmt::format("{} of {} fixes have none, their quality stands in: {}", usual, fixes.fixes,
                      usual_sigmas(fixes)));

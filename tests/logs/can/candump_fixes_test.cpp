@@ -93,7 +93,7 @@ TEST_CASE("candump: a fix without accuracy takes the stated default or is corrup
   LogRequest request = fixes();
   CHECK_THROWS_MATCHES(read(position("1.0", 1, 1, 0), request), InputError,
                        Message("car.log: none of 1 records could be used; first: car.log:1:1: the "
-                               "log has no accuracy: state 'default_sigma'"));
+                               "log has no accuracy: state 'accuracy: {default_sigma: ...}'"));
   request.default_sigma_m = 3;
   const LogData data = read(position("1.0", 1, 1, 0), request);
   CHECK(data.fixes.at(0).covariance_en(0, 0) == 9);
@@ -105,7 +105,7 @@ TEST_CASE("candump: a fix without accuracy takes the stated default or is corrup
   check_refused(
       request,
       "the fixes have no accuracy: map accuracy, accuracy_east and accuracy_north, or sigma_east and "
-      "sigma_north, or quality, or state 'default_sigma' (in metres)");
+      "sigma_north, or quality, or state 'accuracy: {default_sigma: ...}' (in metres)");
 }
 
 TEST_CASE("candump: what receivers send for not available is no value") {

@@ -276,12 +276,13 @@ TEST_CASE("csv: a fix without accuracy takes the stated default, or is corrupt")
   CHECK(strict.fixes.size() == 1);
   CHECK(strict.corrupt == 2);
   CHECK(strict.corrupt_examples[0] ==
-        "log.csv:2:8: accuracy: the log has no accuracy: state 'default_sigma'");
+        "log.csv:2:8: accuracy: the log has no accuracy: state 'accuracy: {default_sigma: ...}'");
 
   CHECK_THROWS_MATCHES(
       read("time,latitude,longitude\n1,50,8\n", gnss(0)), InputError,
-      Message("log.csv: the fixes have no accuracy: map accuracy, accuracy_east and accuracy_north, "
-              "or sigma_east and sigma_north, or quality, or state 'default_sigma' (in metres)"));
+      Message(
+          "log.csv: the fixes have no accuracy: map accuracy, accuracy_east and accuracy_north, "
+          "or sigma_east and sigma_north, or quality, or state 'accuracy: {default_sigma: ...}' (in metres)"));
 }
 
 TEST_CASE("csv: a line without a fix is not corrupt") {

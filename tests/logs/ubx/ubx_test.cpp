@@ -276,6 +276,18 @@ TEST_CASE("ubx: where no frame has a position, NMEA sentences between the frames
   CHECK(data.kinds.at("GPGGA") == 2);
   CHECK(has_note(data,
                  "no UBX message holds a position; they are those of the NMEA sentences between the frames"));
+  // Of both kinds together only the first complaints are kept.
+  std::string damaged = log;
+  for (int i = 0; i < 8; ++i) {
+    std::string frame = raw;
+    frame.back() ^= 1;
+    std::string sentence = nmea::gga("000003");
+    sentence[20] ^= 1;
+    damaged += frame + sentence;
+  }
+  const LogData complained = read(damaged, request);
+  CHECK(complained.corrupt >= 16);
+  CHECK(complained.corrupt_examples.size() == kCorruptExamples);
   // Frames with positions come first.
   CHECK(read(pvt_frame(nav_pvt()) + nmea::rmc("000001") + raw, request).fixes.at(0).latitude_deg == 55.5);
 }

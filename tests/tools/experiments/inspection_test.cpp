@@ -230,7 +230,8 @@ TEST_CASE("inspection: accuracies that say little") {
   const LogInspection none =
       inspect(gnss_csv([](int i, Row& row) { row.sigma_east = i < 20 ? 1 + 0.1 * i : 0; }));
   CHECK(none.fixes->with_accuracy == 20);
-  CHECK(has(inspection_text(none), "100 of 120 fixes have none: state a 'default_sigma' for them"));
+  CHECK(has(inspection_text(none),
+            "100 of 120 fixes have none: state 'accuracy: {default_sigma: ...}' for them"));
 }
 
 TEST_CASE("inspection: speeds in another unit are named") {

@@ -73,8 +73,8 @@ const char* PositionStream::stand_in(GeodeticFix& fix) {
     return take_sigma(fix, usual.sigma_m * fix.told.hdop, true, usual_hdop_[index]);
   if (usual.sigma_m > 0) return take_sigma(fix, usual.sigma_m, false, usual_quality_[index]);
   return hdop_told ? "the log has no accuracy but HDOP: state 'range_error', which is multiplied by "
-                     "HDOP, or 'default_sigma'"
-                   : "the log has no accuracy: state 'default_sigma'";
+                     "HDOP, or 'accuracy: {default_sigma: ...}'"
+                   : "the log has no accuracy: state 'accuracy: {default_sigma: ...}'";
 }
 
 /// @param claimed the receiver told something about this fix that the sigma comes from

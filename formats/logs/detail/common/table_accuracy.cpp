@@ -116,10 +116,10 @@ AccuracyQuantities choose_accuracy(const std::function<bool(std::string_view)>& 
   } else if (request.default_sigma_m > 0 || has("quality") || (has("hdop") && request.range_error_m > 0)) {
     return {};
   } else {
-    throw InputError(
-        fmt::format("{}: the fixes have no accuracy: map accuracy, accuracy_east and accuracy_north, or "
-                    "sigma_east and sigma_north, or quality, or state 'default_sigma' (in metres)",
-                    path));
+    throw InputError(fmt::format(
+        "{}: the fixes have no accuracy: map accuracy, accuracy_east and accuracy_north, or "
+        "sigma_east and sigma_north, or quality, or state 'accuracy: {{default_sigma: ...}}' (in metres)",
+        path));
   }
   if (request.accuracy == AccuracyMeaning::automatic)
     notes.push_back(

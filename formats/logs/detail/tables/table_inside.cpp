@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include <waymark/formats/logs/detail/common/inner_log.hpp>
 #include <waymark/formats/logs/detail/csv/csv_log.hpp>
 #include <waymark/formats/logs/detail/csv/csv_table.hpp>
 
@@ -59,12 +60,7 @@ void TableInside::finish_table() {
   table_->finish();
   move_samples();
   LogData& inner = table_->data();
-  data_.records += inner.records;
-  data_.without_fix += inner.without_fix;
-  data_.corrupt += inner.corrupt;
-  std::move(inner.corrupt_examples.begin(), inner.corrupt_examples.end(),
-            std::back_inserter(data_.corrupt_examples));
-  std::move(inner.notes.begin(), inner.notes.end(), std::back_inserter(data_.notes));
+  add_counts(data_, inner);
   for (const auto& [quality, count] : inner.qualities) data_.qualities[quality] += count;
 }
 

@@ -7,6 +7,7 @@
 
 #include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/detail/common/inner_log.hpp>
 #include <waymark/formats/logs/detail/nmea/nmea.hpp>
 
 namespace waymark::formats {
@@ -271,12 +272,7 @@ void UbxFixDecoder::take_nmea() {
   data_.fixes = std::move(nmea.fixes);
   data_.truth = std::move(nmea.truth);
   data_.qualities = std::move(nmea.qualities);
-  data_.records += nmea.records;
-  data_.without_fix += nmea.without_fix;
-  data_.corrupt += nmea.corrupt;
-  data_.corrupt_examples.insert(data_.corrupt_examples.end(), nmea.corrupt_examples.begin(),
-                                nmea.corrupt_examples.end());
-  data_.notes.insert(data_.notes.end(), nmea.notes.begin(), nmea.notes.end());
+  add_counts(data_, nmea);
   data_.kinds.merge(nmea.kinds);
 }
 
