@@ -170,8 +170,12 @@ void Estimator::work() {
     reset("jump", fmt::format("the clock of the odometry has jumped by {:.3f} s",
                               seconds_between(jump->from, jump->to)));
     forget_motion();
-    // After a pause the drive so far is still one drive with a gap. Times that come again are not.
-    if (jump->to < jump->from) {
+    // After a pause the drive so far is still one drive. After another step of the clock it is not.
+    constexpr double kPause_s = 60;
+    const double step_s = seconds_between(jump->from, jump->to);
+    if (step_s > kPause_s) {
+      so_far_.pause(jump->to, step_s);
+    } else {
       so_far_.clear();
       learner_.forget();
     }

@@ -190,6 +190,16 @@ bool FixJudge::convinces(const Fix& fix, const Reckoning& reckoning) {
          seconds_between(row.front().stamp, fix.stamp) >= receiver.doubted_s;
 }
 
+void FixJudge::clear() {
+  for (auto& [source, receiver] : receivers_) {
+    Receiver fresh;
+    fresh.used = std::move(receiver.used);
+    fresh.used_each = receiver.used_each;
+    fresh.used_count = receiver.used_count;
+    receiver = std::move(fresh);
+  }
+}
+
 void FixJudge::forget_elsewhere() {
   for (auto& [source, receiver] : receivers_) {
     receiver.elsewhere.clear();

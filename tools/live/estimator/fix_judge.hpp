@@ -41,8 +41,8 @@ class FixJudge {
   [[nodiscard]] std::vector<Fix> take_believed(int source);
   /// Forgets what agreed with the estimate, and what is elsewhere.
   void forget_elsewhere();
-  /// Forgets the receivers.
-  void clear() { receivers_.clear(); }
+  /// Forgets the receivers, but for what they claim.
+  void clear();
 
  private:
   /// How far an accepted fix was from the estimate before it.

@@ -34,12 +34,14 @@ void DriveSoFar::take(const Sample& sample) {
   forget_before(oldest, odometries_);
   forget_before(oldest, fixes_);
   forget_before(oldest, readings_);
+  forget_before(oldest, pauses_);
 }
 
 void DriveSoFar::clear() {
   for (auto& odometry : odometries_) odometry.clear();
   for (auto& receiver : fixes_) receiver.clear();
   for (auto& sensor : readings_) sensor.clear();
+  pauses_.front().clear();
 }
 
 double DriveSoFar::length_s() const {
@@ -47,7 +49,8 @@ double DriveSoFar::length_s() const {
   for (const auto& samples : odometries_)
     if (!samples.empty())
       longest_s = std::max(longest_s, seconds_between(samples.front().stamp, samples.back().stamp));
-  return longest_s;
+  for (const Pause& pause : pauses_.front()) longest_s -= pause.length_s;
+  return std::max(longest_s, 0.0);
 }
 
 drive::DriveLogs DriveSoFar::logs(const drive::DriveDescription& description) const {

@@ -18,7 +18,9 @@ class DriveSoFar {
   /// Takes a sample without its stated delay.
   void take(const Sample& sample);
   void clear();
-  /// Returns the time from the first to the last sample of the odometries.
+  /// Tells that the drive was interrupted. @param until when it went on @param length_s of the interruption
+  void pause(Stamp until, double length_s) { pauses_.front().push_back({until, length_s}); }
+  /// Returns the time from the first to the last sample of the odometries, without the pauses.
   [[nodiscard]] double length_s() const;
   /// Returns odometry and fixes; the logs of sensors are empty. @param description of the drive
   [[nodiscard]] drive::DriveLogs logs(const drive::DriveDescription& description) const;
@@ -29,6 +31,11 @@ class DriveSoFar {
   std::vector<std::deque<OdometrySample>> odometries_;
   std::vector<std::deque<GeodeticFix>> fixes_;       // by receiver
   std::vector<std::deque<SensorReading>> readings_;  // by sensor
+  struct Pause {
+    Stamp stamp;  // of its end
+    double length_s = 0;
+  };
+  std::vector<std::deque<Pause>> pauses_ = std::vector<std::deque<Pause>>(1);
   double kept_s_;
 };
 

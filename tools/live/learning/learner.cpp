@@ -48,6 +48,9 @@ std::optional<Learned> Learner::result(Stamp now) {
 void Learner::forget() {
   if (stop_) *stop_ = true;
   future_ = {};
+  last_.reset();
+  last_length_s_ = 0;
+  next_s_ = std::min(next_s_, kRarest_s);
 }
 
 }  // namespace waymark::live

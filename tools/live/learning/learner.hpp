@@ -1,8 +1,9 @@
 /// When a live estimate learns from its drive, and the work beside it.
 ///
-/// A search begins a minute after the drive did, and again whenever the drive is half as long again, at least
-/// every ten minutes unless less than half of that is remembered. What it finds is used later, by the clock of the drive: after ten seconds, or a fifteenth
-/// of the drive. However long it took, a replay says the same. If it took longer, the estimate waits for it.
+/// A search begins a minute after the drive did, and again whenever the drive is half as long again, at
+/// least every ten minutes unless less than half of that is remembered. What it finds is used later, by the
+/// clock of the drive: after ten seconds, or a fifteenth of the drive. However long it took, a replay says
+/// the same. If it took longer, the estimate waits for it.
 #pragma once
 
 #include <atomic>
@@ -34,7 +35,7 @@ class Learner {
   void begin(Stamp now, double length_s, Work work);
   /// Returns what was learned, when its time has come. Empty, too, if the search was stopped from outside.
   [[nodiscard]] std::optional<Learned> result(Stamp now);
-  /// Stops the work; its result is lost.
+  /// Stops the work; its result is lost, and so is the time of the last one: stamps may begin anew.
   void forget();
 
  private:
