@@ -314,6 +314,32 @@ TEST_CASE("slips: an odometry whose clock, sign or unit is wrong is named and le
   CHECK(hour_m == Approx(without_wheels_m).epsilon(1e-6));
 }
 
+TEST_CASE("slips: a truth of another point of the vehicle is told with its place") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"simulate", "--preset", "urban", "--duration", "300", "--seed", "7", "-o", folder + "drive"})
+              .code == 0);
+  // Fixes that are the truth: what is left is the point.
+  const std::string drive = folder + "drive/drive.yaml";
+  const auto with_truth = [&](const std::string& keys) {
+    write_text(drive,
+               "time: {scale: gps}\n"
+               "odometry: {file: odometry.csv, columns: {time: time_s, speed: speed_mps, yaw_rate: "
+               "yaw_rate_radps}}\n"
+               "gnss: {file: truth.csv, columns: {time: time_s, latitude: latitude_deg, longitude: "
+               "longitude_deg}, accuracy: {default_sigma: 0.02}}\n"
+               "truth: {file: truth.csv, columns: {time: time_s, latitude: latitude_deg, longitude: "
+               "longitude_deg, heading: heading_rad}" +
+                   keys + "}\n");
+    return run({"run", drive, "-o", folder + "out"}).err;
+  };
+  CHECK_FALSE(contains(with_truth(""), "the truth is always"));
+  // the true point is taken for one 1.5 m ahead of it and 0.6 m to its right
+  CHECK(contains(
+      with_truth(", reference: [1.5, -0.6]"),
+      "the truth is always 1.50 m behind the fused position and 0.60 m to its right: if it is that of "
+      "another point of the vehicle, state 'truth: {reference: [-1.50, "));
+}
+
 TEST_CASE("slips: a clock off by 1 s or by leap seconds is named before the fusion, and --sync mends it") {
   const std::string folder = fresh_folder();
   const RunResult second = run({"run", drive_off_by(folder, 1), "-o", folder + "out"});
@@ -363,7 +389,7 @@ TEST_CASE(
   for (const auto& [seconds, name] :
        {std::pair{3600.0, "3600.00 s late, 1 h of a time zone"},
         {315964782.0, "s late, the GPS epoch against the Unix epoch and 18 leap"},
-        {-1299834018.0, "the odometry's clock is -1299834018.00 s late: --sync"}}) {
+        {-1299834018.0, "the odometry's clock is 1299834018.00 s early: --sync"}}) {
     const std::string drive = drive_off_by(folder, seconds);
     const RunResult apart = run({"run", drive, "-o", folder + "out"});
     INFO(apart.err);

@@ -127,12 +127,13 @@ bool is_another_clock(const PreparedDrive& drive, const ClockOffset& offset) {
 }
 
 /// Returns what to state if an odometry seems late or early, for each reason that the drive cannot exclude.
-std::string remedies(const ClockOffset& offset, bool may_be_speed_alone) {
+/// @param delay_s what is stated of the receiver
+std::string remedies(const ClockOffset& offset, bool may_be_speed_alone, double delay_s) {
   if (offset.late_s < 0 && offset.late_s > -kOneClock_s)
     return fmt::format(
         "state 'delay: {:.2f}' for the receiver if its fixes come late (the usual latency); if the odometry's "
         "clock is wrong, {}",
-        -offset.late_s, remedy(offset));
+        delay_s - offset.late_s, remedy(offset));
   if (!may_be_speed_alone) return remedy(offset);
   return fmt::format(
       "{}; or 'speed_delay: {:.2f}' if its speed alone is late (OBD, CAN): the turns do not tell which",
@@ -160,7 +161,8 @@ void treat_clock(const ClockOffset& offset, const DriveLogs& logs, DriveDescript
     const bool may_be_speed_alone =
         offset.late_s >= 0 && offset.late_s <= kOneClock_s && !yaw_rate_is_late(drive.odometry, drive.fixes);
     found.tells_late_quantity |= may_be_speed_alone;
-    cure = remedies(offset, may_be_speed_alone);
+    cure =
+        remedies(offset, may_be_speed_alone, description.gnss.empty() ? 0 : description.gnss.front().delay_s);
   }
   found.warnings.push_back(clock_warning("the odometry", offset, cure));
 }

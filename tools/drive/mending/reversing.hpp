@@ -13,12 +13,13 @@ namespace waymark::drive {
 /// Samples between two stops, driven backwards.
 struct Reversing : SampleRange {};
 
-/// Finds them if no speed is negative. A way between two stops (below 0.5 m/s) is compared with those before
-/// and after it: turned by the angle that lays the odometry of one on its fixes, the odometry of the
+/// Finds them if no speed is negative. A way between two stops (below 0.5 m/s) is compared with those
+/// before and after it: turned by the angle that lays the odometry of one on its fixes, the odometry of the
 /// other leads to its fixes, or away from them. Of all choices of the directions the one counts in which
-/// the ways fit each other best; forwards is preferred. The bias of the yaw rate and its turns per metre are found
-/// by short times that follow each other, and removed before: else they turn each way against the next. Ways whose fixes do not have the shape of the
-/// odometry are not judged, nor are those shorter than 5 m, and than the fixes are accurate.
+/// the ways fit each other best; forwards is preferred. The bias of the yaw rate and its turns per metre
+/// are found by short times that follow each other, and removed before: else they turn each way against the
+/// next. Ways whose fixes do not have the shape of the odometry are not judged, nor are those shorter than
+/// 5 m, and than the fixes are accurate.
 /// @param odometry sorted by stamp
 /// @param fixes sorted by stamp; those of the first receiver that are not withheld are used
 [[nodiscard]] std::vector<Reversing> find_reversing(std::span<const OdometrySample> odometry,

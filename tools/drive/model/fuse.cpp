@@ -227,7 +227,7 @@ std::string words_for_antenna(const AntennaPlace& antenna, const std::string& re
   const Eigen::Vector2d& at = antenna.place_m;
   return fmt::format(
       "the antenna of '{}' seems to be {:.2f} +- {:.2f} m {} and {:.2f} +- {:.2f} m {} the point of the vehicle whose "
-      "motion the odometry measures, and is taken to be there: state 'antenna: [{:.2f}, {:.2f}]' for it, or the result "
+      "motion the odometry measures, but is fused as if it were there: state 'antenna: [{:.2f}, {:.2f}]' for it, or the result "
       "is off by as much, and late or early in bends",
       receiver, std::abs(at.x()), antenna.sigma_m.x(), side(at.x(), "ahead of", "behind"), std::abs(at.y()),
       antenna.sigma_m.y(), side(at.y(), "to the left of", "to the right of"), at.x(), at.y());

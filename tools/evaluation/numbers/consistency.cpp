@@ -19,8 +19,8 @@ namespace {
 constexpr double kTail = 0.025;            // on each side of an interval
 constexpr double kNormal = 1.95996398454;  // quantile of the normal distribution at 1 - kTail
 
-/// From about 600 degrees of freedom on the sum in chi_square_quantile underflows. The cube root of
-/// Wilson and Hilferty is then right to six digits.
+/// The sum in chi_square_quantile has a term for every second degree of freedom. From about 600 on the cube root
+/// of Wilson and Hilferty is right to six digits, at once.
 double two_sided_chi_square(int freedom, bool upper) {
   if (freedom <= 600) return chi_square_quantile(upper ? 1 - kTail : kTail, freedom);
   const double spread = 2.0 / (9.0 * freedom);

@@ -136,6 +136,33 @@ void check_weights(const std::vector<evaluation::SourceResiduals>& sources,
   }
 }
 
+/// An offset that stays in the axes of the vehicle while it turns is one of two points of it, and no error.
+void check_reference(const evaluation::Evaluation& evaluation, std::vector<std::string>& warnings) {
+  constexpr double kLeast_m = 0.2;
+  constexpr double kDeviations = 5;
+  constexpr double kOneWay = 0.8;  // a mean direction of this length: it is an offset in the frame as well
+  const evaluation::TrackMetrics& track = evaluation.truth->fused.track;
+  const double offset_m = std::hypot(track.along.mean, track.cross.mean);
+  const double deviation_m = std::hypot(track.along.deviation, track.cross.deviation);
+  if (!(offset_m > std::max(kLeast_m, kDeviations * deviation_m))) return;
+  Eigen::Vector2d directions = Eigen::Vector2d::Zero();
+  double count = 0;
+  for (const evaluation::EpochResult& epoch : evaluation.epochs) {
+    if (!epoch.direction_rad) continue;
+    directions += Eigen::Vector2d(std::cos(*epoch.direction_rad), std::sin(*epoch.direction_rad));
+    ++count;
+  }
+  if (!(directions.norm() < kOneWay * count)) return;
+  const double ahead_m = -track.along.mean;
+  const double left_m = -track.cross.mean;
+  warnings.push_back(fmt::format(
+      "the truth is always {:.2f} m {} the fused position and {:.2f} m to its {}: if it is that of another point of "
+      "the vehicle, state 'truth: {{reference: [{:.2f}, {:.2f}]}}' (added to what is stated); else the 'antenna' of "
+      "the receiver",
+      std::abs(ahead_m), ahead_m < 0 ? "behind" : "ahead of", std::abs(left_m), left_m < 0 ? "right" : "left",
+      ahead_m, left_m));
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateReport>& states,
@@ -151,6 +178,7 @@ std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateR
   check_weights(evaluation.residuals, warnings);
   if (!evaluation.truth) return warnings;
   check_qualities(evaluation, warnings);
+  check_reference(evaluation, warnings);
   const double factor = evaluation.truth->fused.position.rmse_m / evaluation.truth->gnss.position.rmse_m;
   if (factor > kWorseThanRaw)
     warnings.push_back(fmt::format(

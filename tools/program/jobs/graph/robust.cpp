@@ -161,6 +161,11 @@ Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& r
       found->notes.push_back(fmt::format(
           "{} trusted edges contradict the other edges, and the result with them: {}{}; --trusted none doubts them",
           edges.size(), name_of(graph, edges.front()), edges.size() > 1 ? " and others" : ""));
+    for (const EdgePlace place : found->result.unconfirmed)
+      found->notes.push_back(fmt::format(
+          "{} alone joins two parts of the graph, and others that would join them elsewhere are left out: nothing "
+          "confirms where these parts are to each other",
+          name_of(graph, place)));
     graph = without_edges(graph, found->result.outliers);
     return found->result.summary;
   };
