@@ -336,7 +336,7 @@ TEST_CASE("slips: a truth of another point of the vehicle is told with its place
   // the true point is taken for one 1.5 m ahead of it and 0.6 m to its right
   CHECK(contains(
       with_truth(", reference: [1.5, -0.6]"),
-      "the truth is always 1.50 m behind the fused position and 0.60 m to its right: if it is that of "
+      "the truth is always 1.50 m behind the fused position and 0.60 m to its left: if it is that of "
       "another point of the vehicle, state 'truth: {reference: [-1.50, "));
 }
 
