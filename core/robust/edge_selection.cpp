@@ -13,11 +13,14 @@
 namespace waymark {
 
 double squared_error(const Graph& graph, EdgePlace place) {
-  const EdgeBatchBase& batch = graph.batch(place.batch);
+  return squared_error(graph.batch(place.batch), place.edge, graph.view());
+}
+
+double squared_error(const EdgeBatchBase& batch, std::size_t edge, const ValueView& values) {
   Eigen::VectorXd e;
   std::vector<Eigen::MatrixXd> jacobians;
-  batch.linearize_edge(place.edge, graph.view(), e, jacobians);
-  return e.dot(batch.information(place.edge) * e);
+  batch.linearize_edge(edge, values, e, jacobians);
+  return e.dot(batch.information(edge) * e);
 }
 
 Graph without_edges(const Graph& graph, std::span<const EdgePlace> edges) {

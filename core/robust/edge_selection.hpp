@@ -5,6 +5,7 @@
 /// after a call.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,8 @@ namespace WAYMARK_EXPORT waymark {
 
 /// Returns e^T Omega e at the present values, without loss.
 [[nodiscard]] double squared_error(const Graph& graph, EdgePlace place);
+/// The same at the values of another graph of these vertices.
+[[nodiscard]] double squared_error(const EdgeBatchBase& batch, std::size_t edge, const ValueView& values);
 
 /// Returns a copy of the graph, losses included, without some edges. @param edges ascending
 [[nodiscard]] Graph without_edges(const Graph& graph, std::span<const EdgePlace> edges);

@@ -270,7 +270,8 @@ bool Graduation::outliers_agree(double share) const {
   Graph at_best = graph_;
   at_best.set_values(best_.values);
   const double wide = 4 * chi_square_quantile(options_.inlier_probability, 3);
-  return static_cast<double>(detail::most_that_agree(at_best, best_.outliers, wide)) >= kFewOutliers;
+  return static_cast<double>(detail::most_that_agree(std::move(at_best), best_.outliers, wide)) >=
+         kFewOutliers;
 }
 
 // Returns the outliers that remain if those that agree with the rest return, a share of them at a time. Those
@@ -501,7 +502,7 @@ std::vector<EdgePlace> Graduation::unconfirmed() const {
   constexpr double kUnchecked = 1e-6;
   constexpr std::size_t kMostTried = 100;  // each takes a look at the whole graph
   std::vector<EdgePlace> result;
-  if (best_.outliers.empty()) return result;
+  if (best_.outliers.empty() || interrupted_) return result;
   const std::vector<EdgePlace> members = inside(best_);
   const std::vector<Innovation> innovation =
       innovations(graph_, members, Membership::inside, without_edges(graph_, best_.outliers));

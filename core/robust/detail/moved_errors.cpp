@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <waymark/core/robust/detail/moved_errors.hpp>
+#include <waymark/core/robust/edge_selection.hpp>
 
 namespace waymark::detail {
 
@@ -13,14 +14,12 @@ double squared_error_after(const EdgeBatchBase& batch, std::size_t edge, Graph& 
     before.emplace_back(graph.value(v).begin(), graph.value(v).end());
     move(graph, v, motion);
   }
-  Eigen::VectorXd error;
-  std::vector<Eigen::MatrixXd> jacobians;
-  batch.linearize_edge(edge, graph.view(), error, jacobians);
+  const double squared = squared_error(batch, edge, graph.view());
   for (std::size_t i = 0; i < moved.size(); ++i) graph.set_value(moved[i], before[i]);
-  return error.dot(batch.information(edge) * error);
+  return squared;
 }
 
-std::size_t most_that_agree(const Graph& graph, std::span<const EdgePlace> edges, double bound) {
+std::size_t most_that_agree(Graph graph, std::span<const EdgePlace> edges, double bound) {
   constexpr std::size_t kComparisons = 300'000;
   std::vector<EdgePlace> pairs;
   for (const EdgePlace place : edges) {
@@ -30,17 +29,16 @@ std::size_t most_that_agree(const Graph& graph, std::span<const EdgePlace> edges
     const std::span<const VertexIndex> ends = graph.batch(place.batch).vertices(place.edge);
     return std::array{graph.id(ends[0]) < graph.id(ends[1]) ? ends[1] : ends[0]};
   };
-  Graph trial = graph;
   std::size_t most = 0;
   const std::size_t stride = 1 + pairs.size() * pairs.size() / kComparisons;
   for (std::size_t i = 0; i < pairs.size(); i += stride) {
     const EdgeBatchBase& batch = graph.batch(pairs[i].batch);
     const std::optional<FiniteMotion> motion =
-        motion_to_agree(batch, pairs[i].edge, trial, later_end(pairs[i]));
+        motion_to_agree(batch, pairs[i].edge, graph, later_end(pairs[i]));
     if (!motion) continue;
     const auto agrees = [&](EdgePlace place) {
       const EdgeBatchBase& other = graph.batch(place.batch);
-      return squared_error_after(other, place.edge, trial, later_end(place), *motion) <= bound;
+      return squared_error_after(other, place.edge, graph, later_end(place), *motion) <= bound;
     };
     most = std::max(most, static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), agrees)));
   }

@@ -19,6 +19,6 @@ namespace waymark::detail {
 /// odometry edge contradicts agree, and so do false ones of one mistaken place; random ones do not. Of very many
 /// edges only some are asked what they want. Edges of other than two vertices agree with none.
 /// @param bound of e^T Omega e
-[[nodiscard]] std::size_t most_that_agree(const Graph& graph, std::span<const EdgePlace> edges, double bound);
+[[nodiscard]] std::size_t most_that_agree(Graph graph, std::span<const EdgePlace> edges, double bound);
 
 }  // namespace waymark::detail

@@ -337,7 +337,7 @@ TEST_CASE("slips: a truth of another point of the vehicle is told with its place
   CHECK(contains(
       with_truth(", reference: [1.5, -0.6]"),
       "the truth is always 1.50 m behind the fused position and 0.60 m to its left: if it is that of "
-      "another point of the vehicle, state 'truth: {reference: [-1.50, "));
+      "another point of the vehicle, state 'truth: {reference: [-1.50, 0.60]}'"));
 }
 
 TEST_CASE("slips: a clock off by 1 s or by leap seconds is named before the fusion, and --sync mends it") {

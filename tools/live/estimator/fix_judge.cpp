@@ -13,7 +13,6 @@
 namespace waymark::live {
 namespace {
 
-constexpr std::size_t kClaims = 300;
 constexpr std::size_t kJudged = 20;
 constexpr double kAgreed_s = 12;   // that fixes are compared with
 constexpr double kSettled_s = 8;   // of them, at least
@@ -159,20 +158,7 @@ ClaimedAccuracies FixJudge::accept(const Fix& fix) {
     receiver.agreed.push_back(*residual_);
     while (seconds_between(receiver.agreed.front().stamp, fix.stamp) > kAgreed_s) receiver.agreed.pop_front();
   }
-  return claims_with(fix, receiver);
-}
-
-// The claims so far stand for the whole drive: those of the last minutes would make a bad time the usual one.
-ClaimedAccuracies FixJudge::claims_with(const Fix& fix, Receiver& receiver) {
-  std::vector<Fix>& used = receiver.used;
-  used.push_back(fix);
-  const ClaimedAccuracies claims = claimed_accuracies(used);
-  if (receiver.used_count++ % receiver.used_each != 0) used.pop_back();
-  if (used.size() < 2 * kClaims) return claims;
-  for (std::size_t i = 0; i < kClaims; ++i) used[i] = used[2 * i];
-  used.resize(kClaims);
-  receiver.used_each *= 2;
-  return claims;
+  return receiver.claims.with(fix);
 }
 
 bool FixJudge::convinces(const Fix& fix, const Reckoning& reckoning) {
@@ -191,13 +177,7 @@ bool FixJudge::convinces(const Fix& fix, const Reckoning& reckoning) {
 }
 
 void FixJudge::clear() {
-  for (auto& [source, receiver] : receivers_) {
-    Receiver fresh;
-    fresh.used = std::move(receiver.used);
-    fresh.used_each = receiver.used_each;
-    fresh.used_count = receiver.used_count;
-    receiver = std::move(fresh);
-  }
+  for (auto& [source, receiver] : receivers_) receiver = {.claims = std::move(receiver.claims)};
 }
 
 void FixJudge::forget_elsewhere() {

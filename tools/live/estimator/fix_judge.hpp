@@ -17,6 +17,7 @@
 #include <waymark/tools/live/estimator/reckoning.hpp>
 #include <waymark/tools/live/estimator/settings.hpp>
 #include <waymark/tools/live/estimator/window/window.hpp>
+#include <waymark/tools/live/learning/claims_so_far.hpp>
 
 namespace waymark::live {
 
@@ -53,22 +54,19 @@ class FixJudge {
     double accuracy_m = 0;
   };
   struct Receiver {
-    std::deque<Residual> agreed;           // of the last seconds
-    std::optional<Stamp> agrees_since;     // without a fix that is elsewhere
-    double doubted_s = 0;                  // so long fixes that are elsewhere are not believed
-    std::optional<Residual> left{};        // the first of the last fixes, which are elsewhere
-    std::vector<Fix> elsewhere{};          // the last ones in a row, while none of any receiver is used
-    std::vector<Fix> used;                 // evenly over the drive: their claims
-    std::size_t used_each = 1;             // fixes for one of them
-    std::size_t used_count = 0;            // fixes that were used
-    std::deque<Fix> judged;                // the last seconds, all of them, with the dead reckoning
-    std::deque<Eigen::Vector3d> reckoned;  // antenna at these
-    std::optional<std::int64_t> period;    // of the last one that was taken
-    std::optional<Eigen::Vector2d> still;  // a position that repeats
-    double still_way_m = 0;                // of the odometry when it began
+    ClaimsSoFar claims{};
+    std::deque<Residual> agreed{};           // of the last seconds
+    std::optional<Stamp> agrees_since{};     // without a fix that is elsewhere
+    double doubted_s = 0;                    // so long fixes that are elsewhere are not believed
+    std::optional<Residual> left{};          // the first of the last fixes, which are elsewhere
+    std::vector<Fix> elsewhere{};            // the last ones in a row, while none of any receiver is used
+    std::deque<Fix> judged{};                // the last seconds, all of them, with the dead reckoning
+    std::deque<Eigen::Vector3d> reckoned{};  // antenna at these
+    std::optional<std::int64_t> period{};    // of the last one that was taken
+    std::optional<Eigen::Vector2d> still{};  // a position that repeats
+    double still_way_m = 0;                  // of the odometry when it began
   };
 
-  [[nodiscard]] static ClaimedAccuracies claims_with(const Fix& fix, Receiver& receiver);
   [[nodiscard]] std::string judged_by_gate(const Fix& fix, const Reckoning& reckoning);
   [[nodiscard]] bool repeats(const Fix& fix, const Reckoning& reckoning);
   [[nodiscard]] bool is_absurd(const Eigen::Vector2d& off, const Fix& fix, const Window& window) const;

@@ -6,9 +6,13 @@ namespace waymark::live {
 namespace {
 
 template <typename Kept>
+void forget_before(Stamp moment, std::deque<Kept>& source) {
+  while (!source.empty() && source.front().stamp < moment) source.pop_front();
+}
+
+template <typename Kept>
 void forget_before(Stamp moment, std::vector<std::deque<Kept>>& sources) {
-  for (std::deque<Kept>& source : sources)
-    while (!source.empty() && source.front().stamp < moment) source.pop_front();
+  for (std::deque<Kept>& source : sources) forget_before(moment, source);
 }
 
 }  // namespace
@@ -41,7 +45,7 @@ void DriveSoFar::clear() {
   for (auto& odometry : odometries_) odometry.clear();
   for (auto& receiver : fixes_) receiver.clear();
   for (auto& sensor : readings_) sensor.clear();
-  pauses_.front().clear();
+  pauses_.clear();
 }
 
 double DriveSoFar::length_s() const {
@@ -49,7 +53,7 @@ double DriveSoFar::length_s() const {
   for (const auto& samples : odometries_)
     if (!samples.empty())
       longest_s = std::max(longest_s, seconds_between(samples.front().stamp, samples.back().stamp));
-  for (const Pause& pause : pauses_.front()) longest_s -= pause.length_s;
+  for (const Pause& pause : pauses_) longest_s -= pause.length_s;
   return std::max(longest_s, 0.0);
 }
 

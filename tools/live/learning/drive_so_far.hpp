@@ -19,7 +19,7 @@ class DriveSoFar {
   void take(const Sample& sample);
   void clear();
   /// Tells that the drive was interrupted. @param until when it went on @param length_s of the interruption
-  void pause(Stamp until, double length_s) { pauses_.front().push_back({until, length_s}); }
+  void pause(Stamp until, double length_s) { pauses_.push_back({until, length_s}); }
   /// Returns the time from the first to the last sample of the odometries, without the pauses.
   [[nodiscard]] double length_s() const;
   /// Returns odometry and fixes; the logs of sensors are empty. @param description of the drive
@@ -28,14 +28,15 @@ class DriveSoFar {
   [[nodiscard]] std::vector<SensorTable> readings() const;
 
  private:
-  std::vector<std::deque<OdometrySample>> odometries_;
-  std::vector<std::deque<GeodeticFix>> fixes_;       // by receiver
-  std::vector<std::deque<SensorReading>> readings_;  // by sensor
   struct Pause {
     Stamp stamp;  // of its end
     double length_s = 0;
   };
-  std::vector<std::deque<Pause>> pauses_ = std::vector<std::deque<Pause>>(1);
+
+  std::vector<std::deque<OdometrySample>> odometries_;
+  std::vector<std::deque<GeodeticFix>> fixes_;       // by receiver
+  std::vector<std::deque<SensorReading>> readings_;  // by sensor
+  std::deque<Pause> pauses_;
   double kept_s_;
 };
 
