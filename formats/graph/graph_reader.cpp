@@ -286,6 +286,11 @@ class GraphReader {
     }
     if (tag == kOffsetTag)
       line.fail(join(tag, "a .graph file has the offsets in its edges; remove this line"));
+    if (is_of_space(tag))
+      line.fail(
+          "tag " + quote_word(tag) +
+          " is of a graph in space, and the types of Waymark are those of the plane, SE(2); if a plugin "
+          "defines it, load it with --plugin");
     line.fail("unknown tag " + quote_word(tag) + "; if a plugin defines it, load it with --plugin");
   }
 

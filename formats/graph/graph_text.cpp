@@ -18,7 +18,7 @@ bool is_known(std::string_view tag, const TypeRegistry& registry) {
     return std::find(std::begin(tags), std::end(tags), tag) != std::end(tags);
   };
   return registry.find_vertex(tag) != nullptr || registry.find_edge(tag) != nullptr || is_among(kOwnTags) ||
-         is_among(kToroTags) || tag == "FIX" || tag == "PARAMS_SE2OFFSET";
+         is_among(kToroTags) || is_of_space(tag) || tag == "FIX" || tag == "PARAMS_SE2OFFSET";
 }
 
 /// Tells whether a line that begins within a piece of a graph begins with a known tag.

@@ -325,6 +325,11 @@ TEST_CASE("inspection: names of columns and signals say quantity, unit and sense
   CHECK(told("field.status.status") == "quality|ros|");
   CHECK(told("N/S") == "latitude_hemisphere||");
   CHECK(told("lat (rad)") == "latitude|rad|");
+  CHECK(told("heading°") == "heading|deg|");
+  CHECK(told("Geschwindigkeit [km/h]") == "speed|km/h|");
+  CHECK(told("Gierrate [°/s]") == "yaw_rate|deg/s|");
+  CHECK(told("Geographische Länge") == "longitude||");
+  CHECK(told("Vitesse de lacet (deg/s)") == "yaw_rate|deg/s|");
   CHECK_FALSE(propose_quantity("hacc_m_first_60s_only").remark.empty());
 }
 

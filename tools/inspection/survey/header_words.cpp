@@ -10,7 +10,8 @@
 namespace waymark::inspection {
 namespace {
 
-/// Names of a quantity. Words are separated by blanks.
+/// Names of a quantity, in English, and those of test vehicles' tools in German, French and Spanish. Words are
+/// separated by blanks.
 struct Known {
   std::string_view quantity;
   std::string_view names;  ///< separated by '|'
@@ -22,15 +23,19 @@ constexpr std::array kKnown{
         "t|time|timestamp|time stamp|stamp|gps sow|gps tow|gps time|gps seconds|sow|tow|itow|seconds of week|"
         "time of week|t gps|t gps clock|gps week second|gps second|week second|week seconds|unix|unix time|epoch|posix time|t unix|utc|utc "
         "time|gps time unix|time unix|time utc|time gps|time epoch|seconds|secs|sec|datetime|date time|gps timestamp|host time|log time|"
-        "t s|t utc|gpst|gpstime|gps seconds of week|gps time of week|rostime|ros time|header stamp"},
-    Known{"latitude", "lat|latitude|gps lat|gps latitude|gnss lat|gnss latitude"},
-    Known{"longitude", "lon|lng|long|longitude|gps lon|gps longitude|gnss lon|gnss longitude|gps lng"},
+        "t s|t utc|zeit|zeitstempel|temps|heure|horodatage|tiempo|hora|gpst|gpstime|gps seconds of week|gps time of week|rostime|ros time|header stamp"},
     Known{
-        "height",
-        "h|alt|altitude|height|ele|elevation|ellipsoidal height|height ellipsoid|gps alt|gps altitude|hmsl"},
+        "latitude",
+        "lat|latitude|gps lat|gps latitude|gnss lat|gnss latitude|breite|breitengrad|geographische breite|latitud"},
+    Known{"longitude",
+          "lon|lng|long|longitude|gps lon|gps longitude|gnss lon|gnss longitude|gps lng|"
+          "länge|laenge|längengrad|laengengrad|geographische länge|longitud"},
+    Known{"height",
+          "h|alt|altitude|height|ele|elevation|ellipsoidal height|height ellipsoid|gps alt|gps altitude|hmsl|"
+          "höhe|hoehe|hauteur|altura|altitud"},
     Known{"accuracy",
           "accuracy|hacc|h acc|eph|pos acc|position accuracy|pos accuracy|horizontal accuracy|acc "
-          "h|gps accuracy|hpe|epe|accuracy horizontal"},
+          "h|gps accuracy|hpe|epe|accuracy horizontal|genauigkeit|précision|precision|precisión"},
     Known{"accuracy_east", "epx|accuracy east|acc east|acc e"},
     Known{"accuracy_north", "epy|accuracy north|acc north|acc n"},
     Known{
@@ -43,9 +48,10 @@ constexpr std::array kKnown{
     Known{"speed_accuracy", "speed acc|speed accuracy|s acc|sacc|speed sigma|eps"},
     Known{"course_accuracy",
           "heading acc|heading accuracy|course acc|course accuracy|head acc|epd|track accuracy"},
-    Known{"course",
-          "course|cog|track|bearing|course over ground|head mot|heading motion|gps course|gps heading"},
-    Known{"heading", "heading|yaw|azimuth|hdg|psi"},
+    Known{
+        "course",
+        "course|cog|track|bearing|course over ground|head mot|heading motion|gps course|gps heading|kurs|kurs über grund|kurs ueber grund|rumbo"},
+    Known{"heading", "heading|yaw|azimuth|hdg|psi|gierwinkel|cap|lacet|guiñada"},
     Known{"valid", "valid|fix|fix valid|gps valid|position valid|pos valid|fix ok"},
     Known{"quality",
           "q|quality|fix quality|gga mode|gga quality|gps quality|gnss quality|fix type|fixtype|solution|sol "
@@ -64,9 +70,12 @@ constexpr std::array kKnown{
     Known{
         "yaw_rate",
         "twist twist angular z|twist angular z|yaw rate|yawrate|yaw vel|yaw velocity|yawvel|omega|omega z|w|turn rate|yawrate projected|yaw rate "
-        "projected|yawrate calibrated|yaw rate calibrated|yawrate raw|psi dot|psidot|vehicle yaw rate"},
+        "projected|yawrate calibrated|yaw rate calibrated|yawrate raw|psi dot|psidot|vehicle yaw rate|"
+        "gierrate|giergeschwindigkeit|vitesse de lacet|vitesse lacet|velocidad de guiñada"},
     Known{"reverse", "reverse|reverse gear|is reverse|backwards|gear reverse"},
-    Known{"steering_angle", "steering angle|steering|steer angle|steer|steering wheel angle|swa|steer ang"},
+    Known{
+        "steering_angle",
+        "steering angle|steering|steer angle|steer|steering wheel angle|swa|steer ang|lenkwinkel|lenkradwinkel|angle volant"},
     Known{"distance", "distance|odometer|odo|trip|travelled|distance travelled|mileage"},
     Known{"wheel_ticks", "ticks|wheel ticks|odo count|counts|counter|encoder|odo counter|pulses"},
     Known{
@@ -74,7 +83,8 @@ constexpr std::array kKnown{
         "twist twist linear x|twist linear x|v|speed|velocity|vel|vehicle speed|v fwd|speed fwd|forward speed|forward velocity|ground "
         "speed|gspeed|"
         "g speed|sog|speed over ground|wheel speed|obd speed|can speed|gps speed|odo speed|vx|v x|veh speed|"
-        "vehspd|vehiclespeed|s1 pid 0 d vehicle speed|wheel based vehicle speed|tachograph vehicle speed"}};
+        "vehspd|vehiclespeed|s1 pid 0 d vehicle speed|wheel based vehicle speed|tachograph vehicle speed|"
+        "geschwindigkeit|fahrzeuggeschwindigkeit|fahrgeschwindigkeit|vitesse|vitesse véhicule|velocidad"}};
 
 /// Words that name a wheel.
 constexpr std::array kWheels{Known{"front_left", "fl|lf|front left|left front|vl|front axle left"},
@@ -238,6 +248,12 @@ void read_code(std::span<const std::string> words, ColumnProposal& proposal) {
   }
 }
 
+/// Tells whether a byte is part of a word: those beyond ASCII are parts of a letter in UTF-8 ("Länge").
+bool is_letter_or_digit(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return byte >= 0x80 || std::isalnum(byte) != 0;
+}
+
 }  // namespace
 
 std::vector<std::string> words_of(std::string_view name) {
@@ -259,7 +275,7 @@ std::vector<std::string> words_of(std::string_view name) {
       in_unit = false;
     } else if (in_unit) {
       word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    } else if (std::isalnum(static_cast<unsigned char>(c)) == 0) {
+    } else if (!is_letter_or_digit(c)) {
       end_word();
     } else {
       const bool capital = std::isupper(static_cast<unsigned char>(c)) != 0;
@@ -267,7 +283,8 @@ std::vector<std::string> words_of(std::string_view name) {
       const bool before_small = i > 0 && i + 1 < name.size() &&
                                 std::isupper(static_cast<unsigned char>(name[i - 1])) != 0 &&
                                 std::islower(static_cast<unsigned char>(name[i + 1])) != 0;
-      if (capital && (after_small || before_small)) end_word();
+      const bool sign = static_cast<unsigned char>(c) == 0xC2;  // the first byte of a degree sign
+      if ((capital && (after_small || before_small)) || sign) end_word();
       word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     }
   }

@@ -13,6 +13,8 @@ constexpr double kStateSigmas = 6;
 constexpr double kHeldSigmas = 3;
 constexpr double kNearEnd = 0.95;  // of what is usual
 constexpr double kWorseThanRaw = 1.5;
+/// No receiver and no reference system agree so well.
+constexpr double kSameLog_m = 1e-3;
 constexpr const char* kRemedy = "check units, signs, columns and clocks";
 
 /// The prior holds on the first value of a state. A short drive moves it by less than its error.
@@ -179,10 +181,16 @@ std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateR
   if (!evaluation.truth) return warnings;
   check_qualities(evaluation, warnings);
   check_reference(evaluation, warnings);
-  const double factor = evaluation.truth->fused.position.rmse_m / evaluation.truth->gnss.position.rmse_m;
-  if (factor > kWorseThanRaw)
-    warnings.push_back(fmt::format(
-        "fused positions are {:.1f} times as far from the truth as raw GNSS (RMSE): {}", factor, kRemedy));
+  const double fused_m = evaluation.truth->fused.position.rmse_m;
+  const evaluation::PositionMetrics& raw = evaluation.truth->gnss.position;
+  if (raw.count > 0 && raw.rmse_m < kSameLog_m)
+    warnings.push_back(
+        "the fixes are the truth, to a millimetre: the same log seems to be stated as 'gnss' and 'truth', and "
+        "nothing can be said against it; state another 'truth', or none");
+  else if (fused_m > kWorseThanRaw * raw.rmse_m)
+    warnings.push_back(
+        fmt::format("fused positions are {:.1f} times as far from the truth as raw GNSS (RMSE): {}",
+                    fused_m / raw.rmse_m, kRemedy));
   return warnings;
 }
 

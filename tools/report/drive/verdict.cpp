@@ -151,12 +151,15 @@ DriveVerdict verdict_of(const ReportedDrive& drive) {
     return verdict;
   }
   verdict.kind = better >= 0 ? drawing::Verdict::better : drawing::Verdict::worse;
+  const std::string how =
+      std::isnan(better)  // fixes that are the truth
+          ? "not comparable with"
+          : fmt::format("{:.0f} % {} than", std::abs(better), better >= 0 ? "better" : "worse");
   verdict.text += fmt::format(
-      "Fused positions are {:.0f} % {} than raw GNSS: RMSE {:.3f} m against {:.3f} m, largest error {:.3f} m "
+      "Fused positions are {} raw GNSS: RMSE {:.3f} m against {:.3f} m, largest error {:.3f} m "
       "against {:.3f} m, at {} epochs.",
-      std::abs(better), better >= 0 ? "better" : "worse", truth.fused.position.rmse_m,
-      truth.gnss.position.rmse_m, truth.fused.position.max_m, truth.gnss.position.max_m,
-      truth.fused.position.count);
+      how, truth.fused.position.rmse_m, truth.gnss.position.rmse_m, truth.fused.position.max_m,
+      truth.gnss.position.max_m, truth.fused.position.count);
   verdict.text += describe_losses(truth.improvement);
   return verdict;
 }
