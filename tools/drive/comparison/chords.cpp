@@ -30,6 +30,13 @@ double difference_with(double factor, std::span<const TurnPair> turns) {
   return sum / static_cast<double>(turns.size());
 }
 
+/// Returns the same of the chords themselves, which have a factor of 1.
+double difference_of_chords(std::span<const TurnPair> turns) {
+  double sum = 0;
+  for (const TurnPair& pair : turns) sum += std::min(1.0, std::abs(pair.apart_rad));
+  return sum / static_cast<double>(turns.size());
+}
+
 /// By how much the odometry turns more from one chord to the next, and the time and the way of that.
 struct TurnApart {
   double turn_rad = 0;
@@ -149,7 +156,8 @@ std::vector<TurnPair> turns_of(std::span<const ChordPair> chords) {
   for (std::size_t i = 1; i < chords.size(); ++i) {
     if (!chords[i].follows) continue;
     turns.push_back({angle_between(chords[i - 1].gnss, chords[i].gnss),
-                     chords[i].heading_rad - chords[i - 1].heading_rad});
+                     chords[i].heading_rad - chords[i - 1].heading_rad,
+                     turns_apart(chords[i - 1], chords[i])});
   }
   return turns;
 }
@@ -158,7 +166,7 @@ std::optional<double> factor_of_turns(std::span<const TurnPair> turns) {
   if (turns.empty()) return std::nullopt;
   constexpr int kSteps = 300;  // of 3 % each, from 0.01 to 100
   double best = 1;
-  double least = difference_with(1, turns);
+  double least = std::min(difference_with(1, turns), difference_of_chords(turns));
   const double enough = 0.5 * std::min(least, difference_with(0, turns));
   for (int step = 0; step <= kSteps; ++step) {
     const double size = 0.01 * std::pow(1e4, static_cast<double>(step) / kSteps);

@@ -59,7 +59,10 @@ struct ChordPair {
 /// A turn from one chord to the next.
 struct TurnPair {
   double gnss_rad = 0;      ///< in (-pi, pi]
-  double odometry_rad = 0;  ///< not wrapped
+  double odometry_rad = 0;  ///< between the mean headings along them, not wrapped
+  /// turns_apart() of the chords: small if the turns have their size, also where the vehicle turns round
+  /// within a chord, whose direction is no mean heading then
+  double apart_rad = 0;
 };
 
 /// Returns the turns between chords that follow each other.
@@ -67,7 +70,7 @@ struct TurnPair {
 
 /// Returns the factor on the odometry's turns that explains the turns of the fixes: from -100 to -0.01
 /// or from 0.01 to 100. Empty unless the turns differ from those of the fixes at most half as much
-/// with it as with a factor of 1 and without turns.
+/// with it as with a factor of 1, of mean headings and of chords, and without turns.
 [[nodiscard]] std::optional<double> factor_of_turns(std::span<const TurnPair> turns);
 
 /// Whether speeds or turns may be wrong by a factor for want of calibration; beyond 4 they are read wrong.

@@ -155,6 +155,31 @@ TEST_CASE("plausibility: noise that makes turns of a vehicle that hardly turns i
   CHECK_THAT(warnings(doubled).at(0), Catch::Contains("turns are 2"));
 }
 
+TEST_CASE("plausibility: slow U-turns between straight lanes show no other size of turns") {
+  constexpr double kPi = 3.14159265358979;
+  constexpr double kRate_Hz = 5;
+  constexpr double kRadius_m = 5;
+  for (const double turning_mps : {1.5, 2.0, 2.5}) {
+    const int turn = static_cast<int>(std::lround(kRate_Hz * kPi * kRadius_m / turning_mps));
+    Scene field;
+    Eigen::Vector3d pose = Eigen::Vector3d::Zero();
+    for (int lane = 0, k = 0; lane < 24; ++lane) {
+      for (int step = 0; step < 60 + turn; ++step, ++k) {
+        Fix fix;
+        fix.stamp = Stamp::from_seconds(k / kRate_Hz);
+        fix.position = pose.head<2>();
+        field.fixes.push_back(fix);
+        field.antenna.push_back(pose);
+        const bool turns = step >= 60;
+        const double way_m = (turns ? turning_mps : 5.0) / kRate_Hz;
+        const double by = turns ? (lane % 2 == 0 ? kPi : -kPi) / turn : 0;
+        pose += Eigen::Vector3d(way_m * std::cos(pose[2] + by / 2), way_m * std::sin(pose[2] + by / 2), by);
+      }
+    }
+    CHECK(warnings(field).empty());
+  }
+}
+
 TEST_CASE("plausibility: fixes with an error of 10 m do not lengthen the way of a slow vehicle") {
   Scene slow = scene(1, 1, 400);
   for (std::size_t i = 0; i < slow.fixes.size(); ++i) {
