@@ -275,6 +275,21 @@ const Dialect kDialects[] = {
      }},
     {"no names", "",
      [](int s, double lat, double lon) { return fmt::format("{},{:.9f},{:.9f}", 1599998400 + s, lat, lon); }},
+    {"no names, nanoseconds and a word", "",
+     [](int s, double lat, double lon) {
+       return fmt::format("{}000000000,{:.9f},{:.9f},D", 1599998400 + s, lat, lon);
+     }},
+    {"radians that no name tells", "time_unix,latitude,longitude\n",
+     [](int s, double lat, double lon) {
+       const double radian = std::numbers::pi / 180;
+       return fmt::format("{},{:.12f},{:.12f}", 1599998400 + s, lat * radian, lon * radian);
+     }},
+    {"bagpy", "Time,header.stamp.secs,header.stamp.nsecs,latitude,longitude\n",
+     [](int s, double lat, double lon) {
+       return fmt::format("{}.0,{},0,{:.9f},{:.9f}", 1599998400 + s, 1599998395 + s, lat, lon);
+     }},
+    {"topics before the members", "__time,/fix/latitude,/fix/longitude\n",
+     [](int s, double lat, double lon) { return fmt::format("{}.0,{:.9f},{:.9f}", 1599998400 + s, lat, lon); }},
     {"two receivers", "time_unix,receiver,lat,lon\n",
      [](int s, double lat, double lon) {
        return fmt::format("{0},front,{1:.9f},{2:.9f}\n{0},rear,{3:.9f},{2:.9f}", 1599998400 + s, lat, lon,

@@ -329,6 +329,18 @@ TEST_CASE("inspection: names of columns and signals say quantity, unit and sense
   CHECK(told("Geschwindigkeit [km/h]") == "speed|km/h|");
   CHECK(told("Gierrate [°/s]") == "yaw_rate|deg/s|");
   CHECK(told("Geographische Länge") == "longitude||");
+  CHECK(told("velocity_north") == "||");
+  CHECK(told("vel_east") == "||");
+  CHECK(told("VelForward (km/h)") == "speed|km/h|");
+  CHECK(told("Speed (OBD)(km/h)") == "speed|km/h|");
+  CHECK(told("/odom/twist/twist/angular/z") == "yaw_rate||");
+  CHECK(told("/fix/latitude") == "latitude||");
+  CHECK(told("utcTimeMillis") == "time|ms|");
+  CHECK(told("TOW [0.001 s]") == "time|ms|");
+  CHECK(told("HAccuracy [0.01 m]") == "accuracy|cm|");
+  CHECK(told("position_covariance_4") == "sigma_north|m^2|");
+  CHECK(told("angvel_z") == "gyro_z||");
+  CHECK(told("gz") == "gyro_z||");
   CHECK(told("Vitesse de lacet (deg/s)") == "yaw_rate|deg/s|");
   CHECK_FALSE(propose_quantity("hacc_m_first_60s_only").remark.empty());
 }

@@ -117,6 +117,12 @@ std::string without_channels(const LogInspection& log) {
   return reason;
 }
 
+/// Tells whether a drive could use a log if no other one were there.
+bool is_useful(const LogInspection& log) {
+  const std::set<std::string> channels = channels_of(log);
+  return has_positions(log) || !speed_channels(channels).empty() || !yaw_rate_channels(channels).empty();
+}
+
 class Deciding {
  public:
   explicit Deciding(const std::vector<LogInspection>& logs) : logs_(logs), used_(logs.size(), false) {}
@@ -129,9 +135,8 @@ class Deciding {
       if (used_[i]) continue;
       proposal_.unused.push_back(i);
       if (!told_.contains(i))
-        say(i, fmt::format("not used: {}", has_positions(logs_[i]) || !channels_of(logs_[i]).empty()
-                                               ? "other logs have the same channels"
-                                               : without_channels(logs_[i])));
+        say(i, fmt::format("not used: {}", is_useful(logs_[i]) ? "other logs have the same channels"
+                                                               : without_channels(logs_[i])));
     }
     if (proposal_.gnss.empty())
       proposal_.decisions.emplace_back("no log with positions was found: fill in gnss");

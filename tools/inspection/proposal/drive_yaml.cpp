@@ -238,8 +238,8 @@ class Writer {
       const auto columns = proposed_columns(log, stream);
       for (const std::string& quantity : quantity_names(stream)) {  // in their own order
         const auto from = columns.find(quantity);
-        const bool wanted =
-            only.empty() || quantity == "time" || std::find(only.begin(), only.end(), quantity) != only.end();
+        const bool wanted = only.empty() || quantity == "time" || quantity == "date" ||
+                            std::find(only.begin(), only.end(), quantity) != only.end();
         if (from != columns.end() && wanted) column(quantity, *from->second, log, stream, indent + "  ");
       }
     }

@@ -23,34 +23,34 @@ constexpr std::array kKnown{
         "t|time|timestamp|time stamp|stamp|gps sow|gps tow|gps time|gps seconds|sow|tow|itow|seconds of week|"
         "time of week|t gps|t gps clock|gps week second|gps second|week second|week seconds|unix|unix time|epoch|posix time|t unix|utc|utc "
         "time|gps time unix|time unix|time utc|time gps|time epoch|seconds|secs|sec|datetime|date time|gps timestamp|host time|log time|"
-        "t s|t utc|zeit|zeitstempel|temps|heure|horodatage|tiempo|hora|gpst|gpstime|gps seconds of week|gps time of week|rostime|ros time|header stamp"},
+        "t s|t utc|zeit|zeitstempel|temps|heure|horodatage|tiempo|hora|gpst|gpstime|gps seconds of week|gps time of week|rostime|ros time|header stamp|millis|micros"},
     Known{
         "latitude",
-        "lat|latitude|gps lat|gps latitude|gnss lat|gnss latitude|breite|breitengrad|geographische breite|latitud"},
+        "lat|latitude|gps lat|gps latitude|gnss lat|gnss latitude|pos lat|breite|breitengrad|geographische breite|latitud"},
     Known{"longitude",
-          "lon|lng|long|longitude|gps lon|gps longitude|gnss lon|gnss longitude|gps lng|"
+          "lon|lng|long|longitude|gps lon|gps longitude|gnss lon|gnss longitude|gps lng|pos lon|"
           "länge|laenge|längengrad|laengengrad|geographische länge|longitud"},
     Known{"height",
           "h|alt|altitude|height|ele|elevation|ellipsoidal height|height ellipsoid|gps alt|gps altitude|hmsl|"
           "höhe|hoehe|hauteur|altura|altitud"},
     Known{"accuracy",
-          "accuracy|hacc|h acc|eph|pos acc|position accuracy|pos accuracy|horizontal accuracy|acc "
+          "accuracy|hacc|h acc|h accuracy|eph|pos acc|position accuracy|pos accuracy|horizontal accuracy|acc "
           "h|gps accuracy|hpe|epe|accuracy horizontal|genauigkeit|précision|precision|precisión"},
     Known{"accuracy_east", "epx|accuracy east|acc east|acc e"},
     Known{"accuracy_north", "epy|accuracy north|acc north|acc n"},
     Known{
         "sigma_east",
-        "position covariance0|sde|sd e|sd east|std e|std east|sigma e|sigma east|sigma lon|std lon|lon std|lon sigma"},
+        "position covariance0|position covariance 0|longitude sigma|pos east stdev|sde|sd e|sd east|std e|std east|sigma e|sigma east|sigma lon|std lon|lon std|lon sigma"},
     Known{
         "sigma_north",
-        "position covariance4|sdn|sd n|sd north|std n|std north|sigma n|sigma north|sigma lat|std lat|lat std|lat sigma"},
-    Known{"covariance_en_signed_root", "sdne|sdne signed root|position covariance1"},
+        "position covariance4|position covariance 4|latitude sigma|pos north stdev|sdn|sd n|sd north|std n|std north|sigma n|sigma north|sigma lat|std lat|lat std|lat sigma"},
+    Known{"covariance_en_signed_root", "sdne|sdne signed root|position covariance1|position covariance 1"},
     Known{"speed_accuracy", "speed acc|speed accuracy|s acc|sacc|speed sigma|eps"},
     Known{"course_accuracy",
           "heading acc|heading accuracy|course acc|course accuracy|head acc|epd|track accuracy"},
     Known{
         "course",
-        "course|cog|track|bearing|course over ground|head mot|heading motion|gps course|gps heading|kurs|kurs über grund|kurs ueber grund|rumbo"},
+        "course|cog|track|bearing|course over ground|head mot|heading motion|gps course|gps heading|gcrs|crs|kurs|kurs über grund|kurs ueber grund|rumbo"},
     Known{"heading", "heading|yaw|azimuth|hdg|psi|gierwinkel|cap|lacet|guiñada"},
     Known{"valid", "valid|fix|fix valid|gps valid|position valid|pos valid|fix ok"},
     Known{"quality",
@@ -82,7 +82,7 @@ constexpr std::array kKnown{
         "speed",
         "twist twist linear x|twist linear x|v|speed|velocity|vel|vehicle speed|v fwd|speed fwd|forward speed|forward velocity|ground "
         "speed|gspeed|"
-        "g speed|sog|speed over ground|wheel speed|obd speed|can speed|gps speed|odo speed|vx|v x|veh speed|"
+        "g speed|sog|speed over ground|wheel speed|obd speed|can speed|speed obd|gps speed|speed2d|vel forward|velocity forward|spd|odo speed|vx|v x|veh speed|"
         "vehspd|vehiclespeed|s1 pid 0 d vehicle speed|wheel based vehicle speed|tachograph vehicle speed|"
         "geschwindigkeit|fahrzeuggeschwindigkeit|fahrgeschwindigkeit|vitesse|vitesse véhicule|velocidad"}};
 
@@ -95,7 +95,7 @@ constexpr std::array kWheels{Known{"front_left", "fl|lf|front left|left front|vl
 constexpr std::array kInertial{
     Known{
         "gyro",
-        "gyro|gyr|gyroscope|angular rate|angular velocity|angular vel|angularvelocity|rate|omega|w|ang rate"},
+        "gyro|gyr|gyroscope|angular rate|angle rate|angular velocity|angular vel|angvel|angularvelocity|rate|omega|w|ang rate"},
     Known{"acceleration", "acceleration|accel|acc|a|accelerometer|linear acceleration|specific force"}};
 
 std::string joined_words(std::span<const std::string> words) {
@@ -173,7 +173,7 @@ std::string part_of(std::span<const std::string> words) {
     }
     if (words.size() >= 1 && words[0].size() == 2 &&
         (words[0][1] == 'x' || words[0][1] == 'y' || words[0][1] == 'z'))
-      if ((words[0][0] == 'w' && sensor.quantity == "gyro") ||
+      if (((words[0][0] == 'w' || words[0][0] == 'g') && sensor.quantity == "gyro") ||
           (words[0][0] == 'a' && sensor.quantity == "acceleration"))
         return std::string(sensor.quantity) + "_" + words[0][1];
   }
@@ -242,10 +242,46 @@ void read_code(std::span<const std::string> words, ColumnProposal& proposal) {
       proposal.remark = "the numbers of RTKLIB (1 fixed), of ROS or of GGA (4 fixed) are meant";
   } else if (proposal.quantity == "date" && joined_words(words) != "day" && !has_date(words)) {
     proposal.unit = "gps_week";
-  } else if (!words.empty() && words.back().starts_with("covariance")) {
+  } else if (words.front() == "position" && words.size() > 1 && words[1].starts_with("covariance")) {
     proposal.unit = "m^2";
     proposal.unit_known = true;
   }
+}
+
+/// Tells whether words name a part of a velocity that is not the speed forward: "velocity_north".
+bool names_component(std::span<const std::string> words) {
+  static constexpr std::array<std::string_view, 8> kComponents{"north", "east", "n",    "e",
+                                                               "ve",    "vn",   "down", "up"};
+  return std::any_of(words.begin(), words.end(), [](const std::string& word) {
+    return std::find(kComponents.begin(), kComponents.end(), word) != kComponents.end();
+  });
+}
+
+/// Reads the words of a name.
+ColumnProposal proposal_of(std::span<const std::string> words) {
+  ColumnProposal proposal;
+  proposal.quantity = part_of(words);
+  std::size_t used = words.size();
+  if (proposal.quantity.empty()) proposal.quantity = beginning_of(words, used);
+  if (proposal.quantity.empty()) return proposal;
+  const std::span<const std::string> rest = words.subspan(used);
+  // "speed valid" is no speed. The words after the name must be a unit, a sense or a word that
+  // changes nothing.
+  const auto understood = [](const std::string& word) {
+    static constexpr std::array<std::string_view, 12> kHarmless{
+        "cw", "ccw", "from", "east", "north", "flag", "raw", "value", "filtered", "clock", "gps", "gnss"};
+    return !formats::known_unit(word).empty() ||
+           std::find(kHarmless.begin(), kHarmless.end(), word) != kHarmless.end();
+  };
+  if (!rest.empty() && !understood(rest.front())) return {};
+  if (proposal.quantity == "speed" && names_component(rest)) return {};
+  read_dimension(rest, proposal);
+  read_unit(rest.empty() ? words : rest, proposal);
+  read_sense(words, proposal);
+  read_code(words, proposal);
+  const auto odd = std::find_if_not(rest.begin(), rest.end(), understood);
+  if (odd != rest.end()) proposal.remark = "the name is not known from '" + *odd + "' on";
+  return proposal;
 }
 
 /// Tells whether a byte is part of a word: those beyond ASCII are parts of a letter in UTF-8 ("Länge").
@@ -303,31 +339,15 @@ bool names_receiver(std::string_view name) {
 }
 
 ColumnProposal propose_quantity(std::string_view name) {
-  ColumnProposal proposal;
   const std::vector<std::string> all = words_of(name);
   std::span<const std::string> words(all);
-  // rostopic writes "field." before the name of each member.
+  // rostopic writes "field." before the name of each member, and "%time" for when a message was recorded.
   if (words.size() > 1 && words.front() == "field") words = words.subspan(1);
-  proposal.quantity = part_of(words);
-  std::size_t used = words.size();
-  if (proposal.quantity.empty()) proposal.quantity = beginning_of(words, used);
-  if (proposal.quantity.empty()) return proposal;
-  const std::span<const std::string> rest = words.subspan(used);
-  // "speed valid" is no speed. The words after the name must be a unit, a sense or a word that
-  // changes nothing.
-  const auto understood = [](const std::string& word) {
-    static constexpr std::array<std::string_view, 12> kHarmless{
-        "cw", "ccw", "from", "east", "north", "flag", "raw", "value", "filtered", "clock", "gps", "gnss"};
-    return !formats::known_unit(word).empty() ||
-           std::find(kHarmless.begin(), kHarmless.end(), word) != kHarmless.end();
-  };
-  if (!rest.empty() && !understood(rest.front())) return {};
-  read_dimension(rest, proposal);
-  read_unit(rest.empty() ? words : rest, proposal);
-  read_sense(words, proposal);
-  read_code(words, proposal);
-  const auto odd = std::find_if_not(rest.begin(), rest.end(), understood);
-  if (odd != rest.end()) proposal.remark = "the name is not known from '" + *odd + "' on";
+  ColumnProposal proposal = proposal_of(words);
+  // PlotJuggler writes topics before the members: "/odom/twist/twist/linear/x".
+  while (name.starts_with('/') && proposal.quantity.empty() && words.size() > 1)
+    proposal = proposal_of(words = words.subspan(1));
+  if (name == "%time") proposal.remark = "it is when the message was recorded";
   return proposal;
 }
 

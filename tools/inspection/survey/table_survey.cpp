@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -77,8 +78,6 @@ void check_range(ColumnSummary& column, double step) {
     proposal.remark = "the numbers look like degrees times 10^7";
     return;
   }
-  if (position && largest <= 3.2 && column.range.count > 0 && column.range.largest != column.range.smallest)
-    proposal.remark = "degrees are assumed; the numbers could be radians";
   if (proposal.quantity == "speed" && largest > 75) {
     proposal.unit = "km/h";
     proposal.remark =
@@ -88,6 +87,11 @@ void check_range(ColumnSummary& column, double step) {
     proposal.unit = "deg/s";
     proposal.remark =
         fmt::format("no unit is named; values up to {:.4g} are too large for a vehicle in rad/s", largest);
+  }
+  if ((proposal.quantity == "heading" || proposal.quantity == "course") && column.range.smallest < -1.5 &&
+      largest < 3.15) {
+    proposal.unit = "rad";
+    proposal.remark = "no unit is named; the numbers look like radians";
   }
   if (proposal.quantity == "heading" && largest > 13) {
     proposal.unit = "deg";
@@ -136,6 +140,25 @@ void settle_times_of_day(std::vector<ColumnSummary>& columns) {
   }
 }
 
+/// A place of less than 1.6 degrees north and 3.2 degrees east is in the sea: the numbers are radians.
+void settle_radians(std::vector<ColumnSummary>& columns) {
+  const auto proposed = [&](std::string_view quantity, double quarters) {
+    return std::find_if(columns.begin(), columns.end(), [&](const ColumnSummary& column) {
+      const double most = quarters * std::numbers::pi / 2;
+      return column.proposal.quantity == quantity && !column.proposal.unit_known && column.range.count > 0 &&
+             column.range.smallest >= -most && column.range.largest <= most &&
+             column.range.smallest != column.range.largest;
+    });
+  };
+  const auto latitude = proposed("latitude", 1);
+  const auto longitude = proposed("longitude", 2);
+  if (latitude == columns.end() || longitude == columns.end()) return;
+  for (const auto& column : {latitude, longitude}) {
+    column->proposal.unit = "rad";
+    column->proposal.remark = "no unit is named; the numbers look like radians";
+  }
+}
+
 /// Whether the numbers are those of a coordinate in degrees of a drive: not whole, and within a degree.
 bool may_be_degrees(const ColumnSummary& column, double largest) {
   const Range& range = column.range;
@@ -153,6 +176,7 @@ void propose_by_numbers(std::vector<ColumnSummary>& columns, bool first_rises) {
                        fmt::format("the table has no names; its numbers look like a {}", quantity)};
   };
   propose(columns.front(), "time");
+  check_times(columns.front(), columns.front().range.largest, 0);
   for (std::size_t i = 1; i + 1 < columns.size(); ++i) {
     if (!may_be_degrees(columns[i], 90) || !may_be_degrees(columns[i + 1], 180)) continue;
     propose(columns[i], "latitude");
@@ -176,6 +200,25 @@ void remark_on_metres(std::vector<ColumnSummary>& columns) {
       "may be metres: state 'easting: {}', 'northing: {}' under columns, and a frame: 'frame: {{utm_zone: "
       "32N}}' or 'frame: {{enu_origin: [latitude, longitude]}}'",
       east->name, north->name);
+}
+
+/// Seconds whose fractions are in a column of their own ("header.stamp.secs", "header.stamp.nsecs") are whole ones.
+void remark_on_whole_seconds(std::vector<ColumnSummary>& columns) {
+  const auto words_before_last = [](const ColumnSummary& column,
+                                    std::initializer_list<std::string_view> lasts) {
+    std::vector<std::string> words = words_of(column.name);
+    if (words.empty() || std::find(lasts.begin(), lasts.end(), words.back()) == lasts.end()) words.clear();
+    if (!words.empty()) words.pop_back();
+    return words;
+  };
+  for (ColumnSummary& seconds : columns) {
+    const std::vector<std::string> name = words_before_last(seconds, {"sec", "secs"});
+    if (name.empty() || seconds.proposal.quantity != "time") continue;
+    for (const ColumnSummary& fractions : columns)
+      if (words_before_last(fractions, {"nsec", "nsecs", "nanosec"}) == name)
+        seconds.proposal.remark =
+            fmt::format("whole seconds; their fractions are in '{}', which is not read", fractions.name);
+  }
 }
 
 /// Removes a proposal if another column has the same one.
@@ -202,6 +245,7 @@ bool is_of_receiver(const std::string& signal) {
 }
 
 void keep_one_each(std::vector<ColumnSummary>& columns, bool of_bus) {
+  remark_on_whole_seconds(columns);
   const auto better = [](const ColumnProposal& a, const ColumnProposal& b) {
     if (a.remark.empty() != b.remark.empty()) return a.remark.empty();
     return names_unit(a) && !names_unit(b);
@@ -249,10 +293,12 @@ void TableSurvey::begin(std::string_view line) {
   if (!formats::split_fields(line, summary_.separator, fields_)) return;
   width_ = fields_.size();
   columns_.resize(std::min(width_, kMostColumns));
-  const bool numbers = std::all_of(fields_.begin(), fields_.end(), [this](std::string_view field) {
+  const auto values = std::count_if(fields_.begin(), fields_.end(), [this](std::string_view field) {
     return formats::number_from_field(field, summary_.separator).has_value() ||
            holds_instants(forms_of(field, kAllForms));
   });
+  const bool numbers =
+      2 * values > std::ssize(fields_);  // a few words may stand beside them: a status, a frame
   std::vector<std::string_view> names = fields_;
   if (numbers) {
     std::vector<std::string_view> above;
@@ -332,6 +378,7 @@ TableSummary TableSurvey::summary() const {
   else
     remark_on_metres(result.columns);
   settle_times_of_day(result.columns);
+  settle_radians(result.columns);
   keep_one_each(result.columns);
   return result;
 }

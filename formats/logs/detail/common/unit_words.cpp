@@ -10,7 +10,7 @@ struct UnitAlias {
   std::string_view written;  ///< in small letters
   std::string_view name;
 };
-constexpr std::array<UnitAlias, 74> kUnitAliases{{
+constexpr std::array<UnitAlias, 79> kUnitAliases{{
     {"m/s", "m/s"},
     {"mps", "m/s"},
     {"meter/sec", "m/s"},
@@ -81,6 +81,11 @@ constexpr std::array<UnitAlias, 74> kUnitAliases{{
     {"usec", "us"},
     {"\xC2\xB5s", "us"},
     {"nsec", "ns"},
+    {"millis", "ms"},
+    {"micros", "us"},
+    {"nanos", "ns"},
+    {"0.001 s", "ms"},
+    {"0.01 m", "cm"},
     {"m^2", "m^2"},
     {"m2", "m^2"},
     {"m\xC2\xB2", "m^2"},

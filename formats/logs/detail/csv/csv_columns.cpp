@@ -37,7 +37,7 @@ std::vector<std::string_view> views_of(const std::vector<std::string>& names) {
 }
 
 /// Tells whether the first line of a table already holds values. It does if all fields are numbers,
-/// or if the time column is given by number and its field is a time. The second rule is for
+/// or if the time column is given by number and its field is a time (or a number, in another unit). The second rule is for
 /// headerless tables with dates and words.
 bool holds_values(const std::vector<std::string_view>& fields, const LogRequest& request) {
   const auto is_number = [&](std::string_view field) {
@@ -49,7 +49,7 @@ bool holds_values(const std::vector<std::string_view>& fields, const LogRequest&
   const std::size_t number = column_number(time->second.column).value_or(0);
   if (number < 1 || number > fields.size()) return false;
   const std::string_view field = fields[number - 1];
-  return stamp_from_decimal_seconds(field) || stamp_from_iso8601(field);
+  return is_number(field) || stamp_from_decimal_seconds(field) || stamp_from_iso8601(field);
 }
 
 bool is_default_name(const Quantity& quantity, std::string_view name) {
