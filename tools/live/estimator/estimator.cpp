@@ -11,6 +11,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/sensors/rough_fixes.hpp>
 #include <waymark/tools/live/estimator/window/window_setup.hpp>
+#include <waymark/tools/live/learning/unlearned.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::live {
@@ -35,6 +36,7 @@ Estimator::Estimator(drive::DriveDescription description, const drive::FusionSet
       intake_(live.reorder_s, live.longest_gap_s),
       odometries_(description_.odometry.size(), description_.timeline.gap_s),
       guards_(description_.odometry.size()),
+      spot_turns_(description_.odometry.size()),
       rough_(description_, registry),
       reckoning_(description_.timeline.gap_s, 0),
       judge_(description_, setup_.settings, live_, registry),
@@ -47,27 +49,31 @@ Estimator::Estimator(drive::DriveDescription description, const drive::FusionSet
                                     drive::for_relative(setup_.settings, description_.odometry.front().name),
                                     description_.timeline.gap_noise_factor, registry_)
                                     ->standstill_speed());
-  for (std::size_t odometry = 0; odometry < description_.odometry.size(); ++odometry)
-    adapt_to_yaw_rate(odometry);
+  set_up();
 }
 
 Estimator::~Estimator() = default;
 
-/// What is known of a yaw rate before anything was learned holds from the first pose on.
-void Estimator::adapt_to_yaw_rate(std::size_t odometry) {
-  const drive::OdometryConfig& config = description_.odometry[odometry];
-  const drive::YawRateAtRest rest{.stated_derived =
-                                      drive::is_from_wheels_or_steering(config.assembly.yaw_rate_from)};
-  const bool by_default = !stated_.calibration;
-  if (has_several_odometries())
-    drive::adapt_to_yaw_rate_of(config.name, rest, by_default, setup_.settings, registry_);
-  else
-    drive::adapt_to_yaw_rate(rest, by_default, setup_.settings, registry_);
+/// What is known and assumed before the drive has told anything holds from the first pose on.
+void Estimator::set_up() {
+  drive::FusionSettings& settings = setup_.settings;
+  settings = drive::decided(with_open_calibration(stated_, description_, so_far_, registry_), registry_);
+  for (const drive::OdometryConfig& odometry : description_.odometry) {
+    const drive::YawRateAtRest rest{.stated_derived =
+                                        drive::is_from_wheels_or_steering(odometry.assembly.yaw_rate_from)};
+    const bool by_default = !stated_.calibration;
+    if (has_several_odometries())
+      drive::adapt_to_yaw_rate_of(odometry.name, rest, by_default, settings, registry_);
+    else
+      drive::adapt_to_yaw_rate(rest, by_default, settings, registry_);
+  }
+  if (*settings.estimates_noise) settings = drive::with_noise(std::move(settings), noise_);
+  settings = with_usual_noise(std::move(settings), description_, registry_);
 }
 
 void Estimator::know_yaw_rate(std::size_t odometry, std::string_view source) {
   description_.odometry[odometry].assembly.yaw_rate_from = source;  // what is learned needs it as well
-  adapt_to_yaw_rate(odometry);
+  set_up();
 }
 
 void Estimator::begin_with(const WarmStart& start) {
@@ -76,7 +82,7 @@ void Estimator::begin_with(const WarmStart& start) {
     noise_ = start.noise;
     std::erase_if(noise_.parameters,
                   [this](const drive::NoiseParameter& parameter) { return !is_open(parameter); });
-    setup_.settings = drive::with_noise(std::move(setup_.settings), noise_);
+    set_up();
   }
   if (start.frame.zone != 0 && !frame_) {
     frame_ = start.frame;
@@ -203,6 +209,7 @@ void Estimator::forget_motion() {
   reckoning_.clear();
   odometries_.clear();
   guards_.assign(guards_.size(), {});
+  spot_turns_.assign(spot_turns_.size(), {});
   receivers_.clear();
   fixes_.clear();
   pending_.clear();
@@ -243,7 +250,7 @@ OdometrySample Estimator::guarded(std::size_t source, const OdometrySample& samp
         fmt::format("the speed leaps from {:.3g} to {:.3g} m/s: the wheels lock or spin, or the reading is "
                     "wrong; until it leaps back, the speed before is assumed, with the noise of a gap",
                     guard.before_leap()->speed_mps, sample.speed_mps));
-  return judged;
+  return spot_turns_[source].judged(judged);
 }
 
 void Estimator::hear(std::size_t source, const OdometrySample& read) {
@@ -477,8 +484,11 @@ void Estimator::reset(const std::string& kind, const std::string& text) {
 // Rough places are a start, and no measurements.
 void Estimator::begin_window(PlacedStretch stretch, std::optional<drive::FirstPose> first_pose) {
   if (!rough_.any()) stretch.fixes.assign(fixes_.begin(), fixes_.end());
+  FusionSetup setup = setup_;
+  setup.settings =
+      with_noise_of_readings(std::move(setup.settings), stated_, description_, so_far_, registry_);
   std::unique_ptr<Window> window =
-      make_window(description_, setup_, *frame_, std::move(first_pose), registry_);
+      make_window(description_, setup, *frame_, std::move(first_pose), registry_);
   for (const SensorReading& reading : readings_)
     if (reading.stamp >= stretch.stamps.front())
       window->add_reading(reading.sensor, reading.stamp, reading.values);

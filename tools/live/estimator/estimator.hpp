@@ -28,6 +28,7 @@
 #include <waymark/tools/live/estimator/fix_judge.hpp>
 #include <waymark/tools/live/estimator/guards/receiver_comparison.hpp>
 #include <waymark/tools/live/estimator/guards/speed_guard.hpp>
+#include <waymark/tools/live/estimator/guards/spot_turns.hpp>
 #include <waymark/tools/live/estimator/intake.hpp>
 #include <waymark/tools/live/estimator/odometries.hpp>
 #include <waymark/tools/live/estimator/reckoning.hpp>
@@ -102,7 +103,7 @@ class Estimator {
   void drop();
   void forget_motion();
   [[nodiscard]] bool is_left_out(const Sample& sample);
-  void adapt_to_yaw_rate(std::size_t odometry);
+  void set_up();
   void learn(Stamp now);
   void begin_search(Stamp now);
   void adopt(Learned learned);
@@ -127,6 +128,7 @@ class Estimator {
   Intake intake_;
   Odometries odometries_;
   std::vector<SpeedGuard> guards_;  // by odometry
+  std::vector<SpotTurns> spot_turns_;
   RoughPlaces rough_;
   Reckoning reckoning_;
   FixJudge judge_;

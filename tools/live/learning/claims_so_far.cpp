@@ -4,14 +4,16 @@ namespace waymark::live {
 
 ClaimedAccuracies ClaimsSoFar::with(const Fix& fix) {
   constexpr std::size_t kFewest = 300;
-  kept_.push_back(fix);
-  const ClaimedAccuracies claims = claimed_accuracies(kept_);
-  if (count_++ % each_ != 0) kept_.pop_back();
-  if (kept_.size() < 2 * kFewest) return claims;
-  for (std::size_t i = 0; i < kFewest; ++i) kept_[i] = kept_[2 * i];
-  kept_.resize(kFewest);
-  each_ *= 2;
-  return claims;
+  const auto kind = static_cast<std::size_t>(kind_of(fix.told.quality));
+  auto& [fixes, each, count] = by_kind_[kind];
+  fixes.push_back(fix);
+  claims_.median_m[kind] = claimed_accuracies(fixes).median_m[kind];
+  if (count++ % each != 0) fixes.pop_back();
+  if (fixes.size() < 2 * kFewest) return claims_;
+  for (std::size_t i = 0; i < kFewest; ++i) fixes[i] = fixes[2 * i];
+  fixes.resize(kFewest);
+  each *= 2;
+  return claims_;
 }
 
 }  // namespace waymark::live

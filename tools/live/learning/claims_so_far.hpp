@@ -1,6 +1,7 @@
 /// What a receiver has claimed of its accuracy so far.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -8,17 +9,22 @@
 
 namespace waymark::live {
 
-/// Keeps some hundreds of fixes, evenly over the drive: those of the last minutes would make a bad time the usual
-/// one.
+/// Keeps some hundreds of fixes of each kind of solution, evenly over the drive: those of the last minutes would make
+/// a bad time the usual one, and a rare kind would be lost among the others.
 class ClaimsSoFar {
  public:
   /// Takes a fix that is used. @returns the claims of those before, and its own
   [[nodiscard]] ClaimedAccuracies with(const Fix& fix);
 
  private:
-  std::vector<Fix> kept_;
-  std::size_t each_ = 1;   // so many fixes for one that is kept
-  std::size_t count_ = 0;  // of all fixes
+  struct Kept {
+    std::vector<Fix> fixes;
+    std::size_t each = 1;   // so many fixes for one that is kept
+    std::size_t count = 0;  // of all fixes
+  };
+
+  std::array<Kept, 3> by_kind_;  // SolutionKind
+  ClaimedAccuracies claims_;     // of each, when its last fix came
 };
 
 }  // namespace waymark::live

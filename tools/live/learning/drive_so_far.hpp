@@ -24,6 +24,10 @@ class DriveSoFar {
   [[nodiscard]] double length_s() const;
   /// Returns odometry and fixes; the logs of sensors are empty. @param description of the drive
   [[nodiscard]] drive::DriveLogs logs(const drive::DriveDescription& description) const;
+  /// Returns the samples of an odometry. @param source index in the description
+  [[nodiscard]] const std::deque<OdometrySample>& odometry(std::size_t source) const {
+    return odometries_[source];
+  }
   /// Returns the readings of each sensor, in the frame.
   [[nodiscard]] std::vector<SensorTable> readings() const;
 

@@ -1,5 +1,7 @@
 #include <waymark/tools/live/learning/search.hpp>
 
+#include <waymark/tools/live/learning/unlearned.hpp>
+
 namespace waymark::live {
 
 UnusedSources unused_sources(const drive::DriveDescription& description, const std::set<std::string>& names) {
@@ -15,6 +17,8 @@ Learned search(const SearchTask& task, const TypeRegistry& registry, const std::
   Learned learned;
   learned.lesson = learn(task.so_far, described_so_far(task.description, task.frame), task.stated,
                          task.left_out, registry, between);
+  learned.lesson.setup.settings = with_noise_of_readings(
+      std::move(learned.lesson.setup.settings), task.stated, task.description, task.so_far, registry);
   learned.inputs = task.inputs.count();
   learned.resets = task.resets;
   const Lesson& lesson = learned.lesson;

@@ -127,7 +127,10 @@ void run_live(Session& session, const LoopOptions& options) {
     }
     session.work();
     if (chores.work()) intake.flush();
-    if (!any_left) break;
+    if (!any_left) {
+      if (options.news) options.news("all inputs have ended: the run ends");
+      break;
+    }
   }
   intake.flush();
   session.finish();

@@ -1,0 +1,65 @@
+#include <waymark/tools/live/estimator/guards/spot_turns.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace waymark::live {
+namespace {
+
+constexpr double kWindow_s = 1;
+constexpr double kFewestCalm = 5;
+
+bool may_turn_unseen(const OdometrySample& sample) {
+  constexpr double kStands_mps = 0.05;
+  const Interval motion{.speed_mps = sample.speed_mps, .yaw_rate_radps = sample.yaw_rate_radps};
+  return motion.stands(kStands_mps) && !sample.assumed;
+}
+
+}  // namespace
+
+/// Readings that have left the window at rest tell the bias; old ones count less and less.
+void SpotTurns::keep_calm(const OdometrySample& sample) {
+  constexpr double kRemembered = 1000;
+  calm_count_ = std::min(calm_count_ + 1, kRemembered);
+  calm_ += (sample.yaw_rate_radps - calm_) / calm_count_;
+}
+
+double SpotTurns::clear_radps() const {
+  constexpr double kClear_radps = 0.015;
+  constexpr double kDeviations = 5;
+  return std::max(kClear_radps, kDeviations * std::sqrt(noise_ / static_cast<double>(window_.size())));
+}
+
+OdometrySample SpotTurns::judged(OdometrySample sample) {
+  double step_s = window_.empty() ? 0 : seconds_between(window_.back().stamp, sample.stamp);
+  const bool follows = step_s > 0 && step_s <= kWindow_s;
+  if (!may_turn_unseen(sample) || !follows) {
+    window_.clear();
+    turns_ = false;
+    step_s = 0;
+  }
+  if (!may_turn_unseen(sample)) return sample;
+  if (!window_.empty()) {
+    const double difference = sample.yaw_rate_radps - window_.back().yaw_rate_radps;
+    differences_ = std::min(differences_ + 1, 1000.0);
+    noise_ += (0.5 * difference * difference - noise_) / differences_;
+  }
+  window_.push_back(sample);
+  while (seconds_between(window_.front().stamp, sample.stamp) > kWindow_s) {
+    if (!turns_) keep_calm(window_.front());
+    window_.pop_front();
+  }
+  if (calm_count_ < kFewestCalm || step_s <= 0) return sample;
+  double turned_rad = 0;
+  for (const OdometrySample& reading : window_) turned_rad += (reading.yaw_rate_radps - calm_) * step_s;
+  const double rate = turned_rad / (step_s * static_cast<double>(window_.size()));
+  const bool turned = turns_;
+  turns_ = std::abs(rate) > (turned ? 0.5 : 1) * clear_radps();
+  sample.turns_on_spot = turns_;
+  if (turns_ && !turned) missed_rad_ = turned_rad;
+  if (turns_ && turned) sample.yaw_rate_radps += std::exchange(missed_rad_, 0) / step_s;
+  return sample;
+}
+
+}  // namespace waymark::live
