@@ -171,8 +171,11 @@ std::vector<OdometrySample> without_lateness(const std::vector<OdometrySample>& 
 }
 
 bool states_delays(const OdometryConfig& odometry) {
+  constexpr double kZone_s = 900;  // zones differ by quarters of an hour, which says nothing of a delay
+  constexpr double kRounding_s = 1e-6;
   const auto differs = [&](const LogConfig& log) {
-    return log.request.time_offset_s != odometry.logs.front().request.time_offset_s;
+    const double apart_s = log.request.time_offset_s - odometry.logs.front().request.time_offset_s;
+    return std::abs(std::remainder(apart_s, kZone_s)) > kRounding_s;
   };
   return !odometry.delay_place.empty() || odometry.speed_delay_s != 0 || odometry.yaw_rate_delay_s != 0 ||
          std::any_of(odometry.logs.begin(), odometry.logs.end(), differs);

@@ -48,7 +48,8 @@ struct LateQuantity {
 [[nodiscard]] std::vector<OdometrySample> without_lateness(const std::vector<OdometrySample>& odometry,
                                                            const LateQuantity& late);
 
-/// Tells whether the delay of one quantity is stated: by its key (0 as well), or by parts with different offsets.
+/// Tells whether the delay of one quantity is stated: by its key (0 as well), or by parts with different offsets
+/// (but for whole zones of time).
 [[nodiscard]] bool states_delays(const OdometryConfig& odometry);
 
 /// @param odometry "the odometry" or the name of one of several @param cure what to do

@@ -208,13 +208,14 @@ std::string words_for_late_odometry(double late_s) {
       late_s, -late_s);
 }
 
-/// Returns where the antenna is, if nobody has stated it and the drive shows it.
+/// Returns where the antenna is, if nobody has stated it and the drive shows it. What comes late looks like an antenna
+/// further behind.
 std::optional<AntennaPlace> antenna_of(const ModeledDrive& modeled, const PreparedDrive& drive,
                                        const TypeRegistry& registry, const std::function<void()>& between) {
   const bool is_stated =
       std::any_of(drive.receivers.begin(), drive.receivers.end(),
                   [](const PreparedReceiver& receiver) { return receiver.antenna_is_stated; });
-  if (is_stated || modeled.noise.parameters.empty() ||
+  if (is_stated || drive.report.tells_late_quantity || modeled.noise.parameters.empty() ||
       modeled.noise.is_poor_odometry(modeled.placed.odometry_name))
     return std::nullopt;
   return find_antenna_place(modeled.placed, drive.sensors, modeled.settings, registry, between);

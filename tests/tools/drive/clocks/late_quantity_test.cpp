@@ -181,7 +181,7 @@ TEST_CASE("late quantity: without it the samples are those of an odometry on tim
   }
 }
 
-TEST_CASE("late quantity: delays are stated by their keys, or by parts with different offsets") {
+TEST_CASE("late quantity: delays are stated by their keys, or by parts with different offsets, but not by zones") {
   OdometryConfig odometry;
   odometry.logs.resize(2);
   CHECK_FALSE(states_delays(odometry));
@@ -189,6 +189,8 @@ TEST_CASE("late quantity: delays are stated by their keys, or by parts with diff
   CHECK_FALSE(states_delays(odometry));
   odometry.logs.front().request.time_offset_s = -4.8;
   CHECK(states_delays(odometry));
+  odometry.logs.front().request.time_offset_s = -4.4 - 5.75 * 3600;  // the zone of Nepal
+  CHECK_FALSE(states_delays(odometry));
   OdometryConfig zero;
   zero.logs.resize(1);
   zero.delay_place = "drive.yaml:3:16: ";
