@@ -238,6 +238,11 @@ std::optional<double> CsvRecords::given_number(const BoundColumn& column, std::s
   return plain ? std::copysign(std::sqrt(std::abs(*plain)), *plain) : plain;
 }
 
+/// Tells whether a field holds the number that means "no value".
+bool CsvRecords::is_missing(const BoundColumn& column, std::string_view field) const {
+  return column.missing && number_from_field(field, request_.separator) == column.missing;
+}
+
 double CsvRecords::number(const BoundColumn* column, bool required) {
   if (column == nullptr) return kNoNumber;
   const std::string_view field = fields_[column->field];
@@ -250,7 +255,7 @@ double CsvRecords::number(const BoundColumn* column, bool required) {
                                   quote_field(field)));
     return kNoNumber;
   }
-  if (std::isnan(*given)) {
+  if (std::isnan(*given) || is_missing(*column, field)) {
     if (required) complain(*column, "no value");
     return kNoNumber;
   }

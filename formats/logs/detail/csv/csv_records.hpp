@@ -55,6 +55,7 @@ class CsvRecords {
   [[nodiscard]] std::optional<TableInstant> instant_of_day(const BoundColumn& column, std::string_view field);
   void require_date(const std::string& path) const;
   [[nodiscard]] std::optional<Stamp> stamp();
+  [[nodiscard]] bool is_missing(const BoundColumn& column, std::string_view field) const;
   [[nodiscard]] double number(const BoundColumn* column, bool required);
   [[nodiscard]] std::optional<double> given_number(const BoundColumn& column, std::string_view field) const;
   [[nodiscard]] double angle(const BoundColumn* column, const BoundColumn* hemisphere);
