@@ -23,7 +23,9 @@ CsvRecords::CsvRecords(const CsvColumns& columns, const std::string& path, LogRe
       request_(std::move(request)),
       data_(data),
       positions_(path, request_, nullptr),
-      filtered_(columns.filtered()) {
+      filtered_(columns.filtered()),
+      unknown_speed_(request_.stream == StreamKind::sensor ? nullptr : bound_.speed),
+      unknown_course_(request_.stream == StreamKind::sensor ? nullptr : bound_.course) {
   offset_ = request_.gps_week * kGpsWeekNanoseconds + std::llround(request_.time_offset_s * 1e9);
   require_date(path);
   if (request_.stream == StreamKind::gnss && request_.readings.empty()) {
@@ -134,7 +136,22 @@ bool CsvRecords::read_details(GeodeticFix& fix) {
   return true;
 }
 
+/// Some logs have -1 for a speed or a course that is not known: read as reversing, it spoils the drive.
+void CsvRecords::take_out_unknown() {
+  for (const UnknownMarks* marks : {&unknown_speed_, &unknown_course_}) {
+    if (!marks->found()) continue;
+    const BoundColumn& column = marks->column();
+    const std::size_t count = take_out_marks(*marks, request_, data_);
+    if (count > 0)
+      data_.notes.push_back(fmt::format(
+          "{}: {} values of {} are -1 {}, and no other one is negative: they are taken as not known (as 'missing: "
+          "-1' of the column says; 'missing' with another number keeps them)",
+          path_, count, column.quantity->name, column.unit));
+  }
+}
+
 void CsvRecords::finish() {
+  take_out_unknown();
   if (unwanted_ > 0)
     data_.notes.push_back(fmt::format("{}: {} rows are left out by 'where'", path_, unwanted_));
   if (strange_qualities_ > 0)
@@ -259,6 +276,8 @@ double CsvRecords::number(const BoundColumn* column, bool required) {
     if (required) complain(*column, "no value");
     return kNoNumber;
   }
+  unknown_speed_.see(column, *given);
+  unknown_course_.see(column, *given);
   const Quantity& quantity = *column->quantity;
   // the range is for the given angle, before any offset
   const double scaled = column->factor * *given;

@@ -15,6 +15,7 @@
 #include <waymark/formats/logs/detail/csv/csv_bindings.hpp>
 #include <waymark/formats/logs/detail/csv/csv_columns.hpp>
 #include <waymark/formats/logs/detail/csv/table_time.hpp>
+#include <waymark/formats/logs/detail/csv/unknown_marks.hpp>
 #include <waymark/formats/logs/detail/place/utm.hpp>
 
 namespace waymark::formats {
@@ -66,6 +67,7 @@ class CsvRecords {
   [[nodiscard]] std::optional<Position> position_on_grid(double easting_m, double northing_m);
   void set_covariance(GeodeticFix& fix, const GridAxes& axes);
   void complain(const BoundColumn& column, std::string what);
+  void take_out_unknown();
 
   Bindings bound_;
   /// of a sensor, in the order of LogRequest::readings; null: there is no such column
@@ -83,6 +85,7 @@ class CsvRecords {
   WeekCount weeks_;                      ///< of a log whose times may be those of a week
   std::optional<std::size_t> filtered_;  ///< field that decides
   std::size_t unwanted_ = 0;
+  UnknownMarks unknown_speed_, unknown_course_;
   std::size_t strange_qualities_ = 0;
   std::string strange_quality_;  ///< the first one
 
