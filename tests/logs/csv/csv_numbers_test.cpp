@@ -135,4 +135,17 @@ TEST_CASE("csv: a number that is stated to mean no value is none, whatever its u
   CHECK(places.without_fix == 1);
 }
 
+TEST_CASE("csv: an accuracy that is stated comes before sigmas that only have default names") {
+  const std::string table = "time,latitude,longitude,sigma_east,sigma_north,h\n0,50,15,7,7,2\n";
+  LogRequest fixes = request(StreamKind::gnss);
+  CHECK(read(table, fixes).fixes.at(0).covariance_en(0, 0) == Approx(49));
+  fixes.columns["accuracy"].column = "h";
+  CHECK(read(table, fixes).fixes.at(0).covariance_en(0, 0) == Approx(2));  // drms: h / sqrt 2
+  fixes.columns.clear();
+  fixes.columns["sigma_north"].column = "h";  // the other axis keeps its default column
+  const LogData sigmas = read(table, fixes);
+  CHECK(sigmas.fixes.at(0).covariance_en(0, 0) == Approx(49));
+  CHECK(sigmas.fixes.at(0).covariance_en(1, 1) == Approx(4));
+}
+
 }  // namespace csv_numbers_test

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -16,6 +17,27 @@
 #include <waymark/formats/text/stamp_text.hpp>
 
 namespace waymark::formats {
+namespace {
+
+/// Tells which figures of accuracy a table has. Stated ones come before those that have default names.
+std::function<bool(std::string_view)> figures_of(const CsvColumns& columns, const LogRequest& request) {
+  const auto states = [&](const std::string& first, const std::string& second) {
+    return request.columns.contains(first) || request.columns.contains(second);
+  };
+  const bool sigmas = states("sigma_east", "sigma_north");
+  const bool axes = states("accuracy_east", "accuracy_north");
+  const bool radius = states("accuracy", "accuracy");
+  return [&columns, sigmas, axes, radius](std::string_view name) {
+    if (columns.find(name) == nullptr) return false;
+    if (!sigmas && !axes && !radius) return true;
+    if (name.starts_with("sigma_")) return sigmas;
+    if (name.starts_with("accuracy_")) return axes;
+    return name != "accuracy" || radius;
+  };
+}
+
+}  // namespace
+
 CsvRecords::CsvRecords(const CsvColumns& columns, const std::string& path, LogRequest request, LogData& data)
     : bound_(columns),
       field_count_(columns.field_count()),
@@ -29,8 +51,7 @@ CsvRecords::CsvRecords(const CsvColumns& columns, const std::string& path, LogRe
   offset_ = request_.gps_week * kGpsWeekNanoseconds + std::llround(request_.time_offset_s * 1e9);
   require_date(path);
   if (request_.stream == StreamKind::gnss && request_.readings.empty()) {
-    const auto has = [&](std::string_view name) { return columns.find(name) != nullptr; };
-    accuracy_ = choose_accuracy(has, path, request_, data.notes);
+    accuracy_ = choose_accuracy(figures_of(columns, request_), path, request_, data.notes);
     accuracy_east_ = columns.find(accuracy_.east);
     accuracy_north_ = columns.find(accuracy_.north);
     covariance_root_ = columns.find(accuracy_.covariance_root);
