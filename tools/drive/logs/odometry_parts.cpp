@@ -145,7 +145,7 @@ class Assembler {
   }
 
  private:
-  /// Tells whether a source has a channel whose column nobody named only by its default.
+  /// Tells whether a source has a channel that was not only found by its default name.
   [[nodiscard]] bool is_stated(std::string_view source) const {
     return std::any_of(channels_.begin(), channels_.end(), [&](const auto& channel) {
       return channel.first.starts_with(channels_of(source)) && !by_default_.contains(channel.first);

@@ -45,6 +45,7 @@ CsvRecords::CsvRecords(const CsvColumns& columns, const std::string& path, LogRe
       request_(std::move(request)),
       data_(data),
       positions_(path, request_, nullptr),
+      wraps_(bound_.time),
       filtered_(columns.filtered()),
       unknown_speed_(request_.stream == StreamKind::sensor ? nullptr : bound_.speed),
       unknown_course_(request_.stream == StreamKind::sensor ? nullptr : bound_.course) {
@@ -66,6 +67,7 @@ void CsvRecords::read_line(std::string_view line, std::size_t number) {
   complaint_ = {};
   number_ = number;
   if (check_fields()) {
+    wraps_.see(fields_[bound_.time->field]);
     if (!is_wanted()) {
       --data_.records;
       ++unwanted_;
@@ -175,6 +177,10 @@ void CsvRecords::finish() {
   take_out_unknown();
   if (unwanted_ > 0)
     data_.notes.push_back(fmt::format("{}: {} rows are left out by 'where'", path_, unwanted_));
+  if (wraps_.falls() > 0)
+    data_.notes.push_back(fmt::format(
+        "{}: the times are those of a counter of 32 bits: {} of its ends (2^32 {}) {} in the log, and they go on",
+        path_, wraps_.falls(), bound_.time->unit, wraps_.falls() == 1 ? "is" : "are"));
   if (strange_qualities_ > 0)
     data_.notes.push_back(fmt::format(
         "{}: {} values of quality, such as {}, are none that is known (words, or numbers of the unit gga, rtklib "
@@ -260,7 +266,8 @@ std::optional<Stamp> CsvRecords::stamp() {
     return std::nullopt;
   }
   if (request_.time_scale == TimeScale::gps && bound_.date == nullptr) stamp = weeks_.continued(*stamp);
-  if (__builtin_add_overflow(stamp->nanoseconds, offset_, &stamp->nanoseconds)) {
+  if (__builtin_add_overflow(stamp->nanoseconds, wraps_.added_ns(), &stamp->nanoseconds) ||
+      __builtin_add_overflow(stamp->nanoseconds, offset_, &stamp->nanoseconds)) {
     complain(*bound_.time, fmt::format("{} is too large for a stamp", quote_field(field)));
     return std::nullopt;
   }

@@ -12,6 +12,7 @@
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/common/position_stream.hpp>
 #include <waymark/formats/logs/detail/common/table_accuracy.hpp>
+#include <waymark/formats/logs/detail/csv/counter_wraps.hpp>
 #include <waymark/formats/logs/detail/csv/csv_bindings.hpp>
 #include <waymark/formats/logs/detail/csv/csv_columns.hpp>
 #include <waymark/formats/logs/detail/csv/table_time.hpp>
@@ -83,6 +84,7 @@ class CsvRecords {
   Stamp last_of_day_{};                  ///< of a log without a column of dates
   std::int64_t days_ = 0;                ///< midnights since its first time of day
   WeekCount weeks_;                      ///< of a log whose times may be those of a week
+  CounterWraps wraps_;                   ///< of a log whose times may be a counter of 32 bits
   std::optional<std::size_t> filtered_;  ///< field that decides
   std::size_t unwanted_ = 0;
   UnknownMarks unknown_speed_, unknown_course_;
