@@ -62,7 +62,7 @@ std::string number_error(const Quantity& quantity, const ColumnRequest& request)
   const bool is_text = find_unit(quantity, request.unit)->form == UnitForm::text;
   if (request.scale != 1 && (is_text || !has_size(quantity)))
     return fmt::format("{}{} is no number that a scale could multiply; leave out 'scale'", quantity.name,
-                       is_text ? fmt::format(" in {}", request.unit) : "");
+                       is_text && !request.unit.empty() ? fmt::format(" in {}", request.unit) : "");
   if (request.missing && !has_size(quantity))
     return fmt::format("{} is no number of which one could mean no value; leave out 'missing'",
                        quantity.name);
