@@ -159,9 +159,9 @@ TEST_CASE(
   CHECK(odometry.columns.at("yaw_rate").scale == 1);
   CHECK_FALSE(odometry.columns.at("yaw_rate").missing);
   CHECK(error_of_gnss("  columns: {speed: {column: v, scale: 0}}\n") ==
-        "tours/drive.yaml:4:39: gnss.columns.speed.scale: expected a number other than 0, got '0'");
+        "tours/drive.yaml:4:39: columns.speed.scale: expected a number other than 0, got '0'");
   CHECK(error_of_gnss("  columns: {speed: {column: v, scale: .nan}}\n") ==
-        "tours/drive.yaml:4:20: the scale of speed is nan; expected a number other than 0");
+        "tours/drive.yaml:4:39: columns.speed.scale: expected a number other than 0, got '.nan'");
   CHECK(error_of_gnss("  columns: {time: {column: t, scale: 60}}\n") ==
         "tours/drive.yaml:4:19: time is no number that a scale could multiply; leave out 'scale'");
 }
