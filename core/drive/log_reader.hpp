@@ -46,6 +46,10 @@ struct ColumnRequest {
   std::string unit;
   /// sense of an angle, e.g. "cw_from_north"; empty: the default of the quantity
   std::string convention;
+  /// The number times this is the value in `unit` and `convention`: metres per radian of a wheel, frames per second.
+  double scale = 1;
+  /// A number that means "no value", as the log has it: before `scale` and `unit`.
+  std::optional<double> missing{};
 };
 
 /// The rows of a table that belong to a stream: those whose column has a value, or has another one.

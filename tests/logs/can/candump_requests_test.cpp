@@ -59,6 +59,24 @@ TEST_CASE("candump: a column that does not fit the DBC is told with what does") 
                 "'time'; map the receiver's clock as gnss_time, which gives the logger's offset");
 }
 
+TEST_CASE("candump: a scale makes a count a speed, and a stated number is no value") {
+  LogRequest request = request_of(StreamKind::odometry, {{"speed", from("COUNT")}});
+  request.columns["speed"].scale = 0.25;
+  request.columns["speed"].missing = 255;
+  const LogData data = read("(1.0) can0 025#000028\n(2.0) can0 025#0000FF\n", request);
+  REQUIRE(data.readings.size() == 2);
+  CHECK(data.readings.at(0, channel("speed")) == 10);
+  CHECK(std::isnan(data.readings.at(1, channel("speed"))));
+
+  request.columns["speed"] = from("FL");
+  request.columns["speed"].scale = 1.02;
+  check_refused(request,
+                "speed: signal FL has a scale, and by the DBC it is in 'kph': state the unit of the scaled "
+                "value, m/s, km/h, mph, kn, mm/s");
+  request.columns["speed"].unit = "km/h";
+  CHECK(read("(1.0) can0 0AA#0E100000\n", request).readings.at(0, channel("speed")) == Approx(10.2));
+}
+
 TEST_CASE("candump: a signal that the DBC spoils is refused where it is asked for, else noted") {
   LogRequest request = request_of(StreamKind::odometry, {{"speed", from("S", "m/s")}});
   request.companions["dbc"] = {

@@ -145,6 +145,27 @@ modeling: {name: g2, loss: "cauchy:1", options: {weight: 1e6}}
   CHECK(config.settings.modeling_options.at("weight") == "1e6");
 }
 
+TEST_CASE(
+    "drive.yaml: a column has a scale and a number for no value, and wrong ones are refused at their place") {
+  const LogRequest odometry =
+      parse(
+          "odometry: {file: o.csv, columns: {speed: {column: v, scale: -0.31, missing: -1}, yaw_rate: w}}\n"
+          "gnss: {file: g.csv}\n")
+          .description.odometry.front()
+          .logs.front()
+          .request;
+  CHECK(odometry.columns.at("speed").scale == -0.31);
+  CHECK(odometry.columns.at("speed").missing == -1.0);
+  CHECK(odometry.columns.at("yaw_rate").scale == 1);
+  CHECK_FALSE(odometry.columns.at("yaw_rate").missing);
+  CHECK(error_of_gnss("  columns: {speed: {column: v, scale: 0}}\n") ==
+        "tours/drive.yaml:4:39: columns.speed.scale: expected a number other than 0, got '0'");
+  CHECK(error_of_gnss("  columns: {speed: {column: v, scale: .nan}}\n") ==
+        "tours/drive.yaml:4:39: columns.speed.scale: expected a number other than 0, got '.nan'");
+  CHECK(error_of_gnss("  columns: {time: {column: t, scale: 60}}\n") ==
+        "tours/drive.yaml:4:19: time is no number that a scale could multiply; leave out 'scale'");
+}
+
 TEST_CASE("drive.yaml: a data folder given from outside replaces the stated one, absolute names stand") {
   const DriveFile config =
       parse("folder: logs\nodometry: {file: o.csv}\ngnss: {file: /g.csv}\n", "/elsewhere");

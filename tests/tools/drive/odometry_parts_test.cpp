@@ -296,6 +296,42 @@ TEST_CASE("parts: what cannot be put together is said") {
                                "{scale, week, offset}' of the parts"));
 }
 
+TEST_CASE("parts: a channel that is stated comes before one that only has a default name") {
+  OdometryPart unstated = part("speed", 10, 0, 10, constant(36));  // km/h, which nobody asked for
+  unstated.by_default = {"speed"};
+  const OdometryPart distance = part("distance", 10, 0, 10, [](double t) { return 10 * t; });
+  const OdometryPart gyro = part("gyro_z", 10, 0, 10, constant(0.1));
+  OdometryAssembly how;
+  how.gyro_axis = "z";
+  const std::vector<OdometryPart> both{unstated, distance, gyro};
+  CHECK(assemble_odometry(both, how, 0.5).samples[50].speed_mps == Approx(10));
+  // It fills what is lacking, and what is stated by its source.
+  const std::vector<OdometryPart> lacking{unstated, gyro};
+  CHECK(assemble_odometry(lacking, how, 0.5).samples[50].speed_mps == Approx(36));
+  how.speed_from = "speed";
+  CHECK(assemble_odometry(both, how, 0.5).samples[50].speed_mps == Approx(36));
+  // The same channel of two logs: in either order the stated one counts.
+  how.speed_from = {};
+  const OdometryPart stated = part("speed", 10, 0, 10, constant(10));
+  const std::vector<OdometryPart> after{unstated, stated, gyro};
+  const std::vector<OdometryPart> before{stated, unstated, gyro};
+  const std::vector<OdometryPart> twice{unstated, unstated, gyro};
+  CHECK(assemble_odometry(after, how, 0.5).samples[50].speed_mps == Approx(10));
+  CHECK(assemble_odometry(before, how, 0.5).samples[50].speed_mps == Approx(10));
+  CHECK(assemble_odometry(twice, how, 0.5).samples[50].speed_mps == Approx(36));
+}
+
+TEST_CASE("parts: stated wheels give the yaw rate before a default column if the track width is stated") {
+  OdometryPart unstated = part("yaw_rate", 10, 0, 10, constant(0.5));
+  unstated.by_default = {"yaw_rate"};
+  const std::vector<OdometryPart> parts{part("wheel_speed_rear_left", 10, 0, 10, constant(9.9)),
+                                        part("wheel_speed_rear_right", 10, 0, 10, constant(10.1)), unstated};
+  CHECK(assemble_odometry(parts, {}, 0.5).samples[50].yaw_rate_radps == Approx(0.5));
+  OdometryAssembly how;
+  how.track_width_m = 2;
+  CHECK(assemble_odometry(parts, how, 0.5).samples[50].yaw_rate_radps == Approx(0.1));
+}
+
 TEST_CASE("time series: means over a span are those of the lines between readings") {
   const TimeSeries ramp{{Stamp{0}, Stamp{1'000'000'000}, Stamp{3'000'000'000}}, {0, 2, 2}};
   const SeriesIntegral integral(ramp);

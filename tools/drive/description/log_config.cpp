@@ -29,16 +29,21 @@ constexpr std::array<std::string_view, 3> kCompanions{"dbc", "timestamps", "navi
 constexpr NumberRule kWeek{0, 9999, "a GPS week from 0 to 9999"};
 constexpr NumberRule kOffset{-4e9, 4e9, "a number of seconds, at most 4e9"};
 
+constexpr NumberRule kColumnScale{-1e12, 1e12, "a number other than 0"};
+
 ColumnRequest read_column(const YamlSection& columns, const std::string& key) {
   ColumnRequest request;
   if (!columns.node(key).IsMap()) {
     columns.read(key, request.column);
     return request;
   }
-  const YamlSection spec = *columns.section(key, {"column", "unit", "convention"});
+  const YamlSection spec = *columns.section(key, {"column", "unit", "convention", "scale", "missing"});
   spec.read("column", request.column);
   spec.read("unit", request.unit);
   spec.read("convention", request.convention);
+  spec.read("scale", request.scale, kColumnScale);
+  if (request.scale == 0) spec.fail_value("scale", kColumnScale.words);
+  spec.read("missing", request.missing, kAnyNumber);
   return request;
 }
 

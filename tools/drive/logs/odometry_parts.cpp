@@ -24,6 +24,18 @@ constexpr double kStandstillSpeed = 0.05;
 constexpr double kStandstillTime = 2;  // s: ... if they last at least this long
 
 using Channels = std::map<std::string, TimeSeries, std::less<>>;
+using Names = std::set<std::string, std::less<>>;
+
+/// Returns how the names of the channels of a source begin.
+std::string_view channels_of(std::string_view source) {
+  if (source == "gyro") return "gyro_";
+  if (source == "steering") return "steering_angle";
+  if (source == "rear_wheels") return "wheel_speed_rear_";
+  if (source == "front_wheels") return "wheel_speed_front_";
+  if (source == "rear_ticks") return "wheel_ticks_rear_";
+  if (source == "front_ticks") return "wheel_ticks_front_";
+  return source == "ticks" ? "wheel_ticks" : source;
+}
 
 struct Reading {
   Stamp stamp;
@@ -43,7 +55,8 @@ TimeSeries channel_of(std::vector<Reading> readings) {
   return series;
 }
 
-Channels collect_channels(std::span<const OdometryPart> parts) {
+/// A channel whose column is stated comes before one of a default name.
+Channels collect_channels(std::span<const OdometryPart> parts, Names& by_default) {
   Channels channels;
   std::map<std::string, std::string> origin;
   const std::vector<SensorColumn>& known = formats::odometry_channels();
@@ -55,11 +68,19 @@ Channels collect_channels(std::span<const OdometryPart> parts) {
         if (std::isfinite(value)) readings.push_back({part.readings.stamps[row], value});
       }
       if (readings.empty()) continue;
+      const bool is_stated = !part.by_default.contains(known[c].name);
       const auto [place, is_new] = origin.try_emplace(known[c].name, part.file);
-      if (!is_new)
+      const bool was_stated = !is_new && !by_default.contains(known[c].name);
+      if (was_stated && is_stated)
         throw InputError(
             fmt::format("odometry: both {} and {} have '{}'; leave it out of the columns of one of them",
                         place->second, part.file, known[c].name));
+      if (!is_new && !is_stated) continue;  // of two default names, the first
+      if (is_stated)
+        by_default.erase(known[c].name);
+      else
+        by_default.insert(known[c].name);
+      place->second = part.file;
       channels[known[c].name] = channel_of(std::move(readings));
     }
   }
@@ -107,15 +128,15 @@ TimeSeries rate_of_count(const TimeSeries& count, double range, double gap_s) {
 /// Computes speed and yaw rate from the available channels.
 class Assembler {
  public:
-  Assembler(Channels channels, const OdometryAssembly& how, double gap_s)
-      : channels_(std::move(channels)), how_(how), gap_s_(gap_s) {}
+  Assembler(Channels channels, Names by_default, const OdometryAssembly& how, double gap_s)
+      : channels_(std::move(channels)), by_default_(std::move(by_default)), how_(how), gap_s_(gap_s) {}
 
   [[nodiscard]] AssembledOdometry run() {
-    speed_ = chosen("speed", kSpeedSources, how_.speed_from,
+    speed_ = chosen("speed", in_order(kSpeedSources), how_.speed_from,
                     [&](std::string_view source) { return speed(source); });
     flip_in_reverse();
     const TimeSeries yaw =
-        chosen("yaw rate", kYawRateSources, how_.yaw_rate_from, [&](std::string_view source) {
+        chosen("yaw rate", in_order(kYawRateSources, true), how_.yaw_rate_from, [&](std::string_view source) {
           result_.yaw_rate_from = source;
           return this->yaw_rate(source);
         });
@@ -124,8 +145,28 @@ class Assembler {
   }
 
  private:
-  template <std::size_t N, typename Make>
-  TimeSeries chosen(std::string_view what, const std::array<std::string_view, N>& sources,
+  /// Tells whether a source has a channel that was not only found by its default name.
+  [[nodiscard]] bool is_stated(std::string_view source) const {
+    return std::any_of(channels_.begin(), channels_.end(), [&](const auto& channel) {
+      return channel.first.starts_with(channels_of(source)) && !by_default_.contains(channel.first);
+    });
+  }
+  /// Returns the sources in order of preference, those of stated channels first. Wheels, ticks and steering serve
+  /// other purposes than the yaw rate, too: they are stated for it if the measure that it needs is.
+  [[nodiscard]] std::vector<std::string_view> in_order(std::span<const std::string_view> sources,
+                                                       bool of_turns = false) const {
+    std::vector<std::string_view> order(sources.begin(), sources.end());
+    std::stable_partition(order.begin(), order.end(), [&](std::string_view source) {
+      const bool from_wheels = source == "rear_wheels" || source == "rear_ticks";
+      const double measure = from_wheels ? how_.track_width_m : how_.wheelbase_m;
+      const bool is_measured = !of_turns || !is_from_wheels_or_steering(source) || measure > 0;
+      return is_measured && is_stated(source);
+    });
+    return order;
+  }
+
+  template <typename Make>
+  TimeSeries chosen(std::string_view what, const std::vector<std::string_view>& sources,
                     std::string_view stated, Make make) {
     for (const std::string_view source : sources) {
       if (!stated.empty() && source != stated) continue;
@@ -384,6 +425,7 @@ class Assembler {
   }
 
   Channels channels_;
+  Names by_default_;
   const OdometryAssembly& how_;
   double gap_s_;
   TimeSeries speed_;
@@ -399,7 +441,9 @@ bool is_from_wheels_or_steering(std::string_view source) {
 
 AssembledOdometry assemble_odometry(std::span<const OdometryPart> parts, const OdometryAssembly& how,
                                     double gap_s) {
-  return Assembler(collect_channels(parts), how, gap_s).run();
+  Names by_default;
+  Channels channels = collect_channels(parts, by_default);
+  return Assembler(std::move(channels), std::move(by_default), how, gap_s).run();
 }
 
 }  // namespace waymark::drive

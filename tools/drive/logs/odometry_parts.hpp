@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,6 +49,9 @@ struct OdometryPart {
   /// columns as in odometry_channels(), NaN if a row has no value; stamps on the scale of the drive
   SensorTable readings;
   std::string file;  ///< for messages
+  /// Channels that were found by the default names of their columns, beside others that are stated. They serve
+  /// where nothing else does.
+  std::set<std::string, std::less<>> by_default{};
 };
 
 struct AssembledOdometry {
@@ -61,7 +66,8 @@ struct AssembledOdometry {
 /// interpolation between readings. So turn and distance are kept, whatever the rates. If a reading
 /// is missing for longer than gap_s (and 2.5 usual intervals of its channel), there is a gap.
 /// @throws InputError for channels given twice, for a missing source of speed or yaw rate, and for
-/// a vehicle parameter that a source needs and that is not stated
+/// a vehicle parameter that a source needs and that is not stated. Sources of stated channels come before
+/// those of OdometryPart::by_default; of wheels, which serve the speed too, only if their track width is stated.
 [[nodiscard]] AssembledOdometry assemble_odometry(std::span<const OdometryPart> parts,
                                                   const OdometryAssembly& how, double gap_s);
 

@@ -1,13 +1,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <iterator>
 #include <limits>
+#include <set>
+#include <string>
 
 #include <fmt/format.h>
 
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/channels.hpp>
 #include <waymark/tools/drive/logs/clock_offsets.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
@@ -16,15 +20,26 @@
 namespace waymark::drive {
 namespace {
 
+/// Returns the channels of a log that its description does not name, although it names others.
+std::set<std::string, std::less<>> channels_by_default(const LogRequest& request) {
+  std::set<std::string, std::less<>> unstated;
+  for (const SensorColumn& channel : formats::odometry_channels())
+    if (!request.columns.contains(channel.name)) unstated.insert(channel.name);
+  if (unstated.size() == formats::odometry_channels().size()) unstated.clear();
+  return unstated;
+}
+
 /// Assembles logs with channels. @throws InputError if some are complete odometry and
 /// others are not
-void assemble_parts(const std::vector<DriveLogs::Log>& logs, const OdometryAssembly& assembly,
+void assemble_parts(const std::vector<DriveLogs::Log>& logs, const OdometryConfig& config,
                     const DriveDescription& description, PreparedOdometry& source, PrepareReport& report) {
   std::vector<OdometrySample>& odometry = source.samples;
   std::vector<OdometryPart> parts;
-  for (const DriveLogs::Log& log : logs) {
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    const DriveLogs::Log& log = logs[i];
     if (log.data.readings.size() == 0) continue;
     OdometryPart part{log.data.readings, log.file};
+    if (i < config.logs.size()) part.by_default = channels_by_default(config.logs[i].request);
     put_on_scale(part.readings.stamps, log, description.scale(),
                  [](Stamp& stamp) -> Stamp& { return stamp; });
     settle_stamps(part.readings, log.file, report);
@@ -38,7 +53,7 @@ void assemble_parts(const std::vector<DriveLogs::Log>& logs, const OdometryAssem
                     description.path));
   AssembledOdometry assembled = [&] {
     try {
-      return assemble_odometry(parts, assembly, description.timeline.gap_s);
+      return assemble_odometry(parts, config.assembly, description.timeline.gap_s);
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}", description.path, error.what()));
     }
@@ -117,7 +132,7 @@ void read_source(const std::vector<DriveLogs::Log>& logs, const OdometryConfig& 
     settle_stamps(samples, before, log.file, report);
   }
   source.yaw_rate_at_rest.stated_derived = is_from_wheels_or_steering(config.assembly.yaw_rate_from);
-  assemble_parts(logs, config.assembly, description, source, report);
+  assemble_parts(logs, config, description, source, report);
   drop_impossible_turns(source.name, logs.front().file, stream, samples, report);
   clean_stream(
       samples, stream,

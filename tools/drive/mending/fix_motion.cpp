@@ -48,7 +48,9 @@ MotionOfFixes::TimedChord MotionOfFixes::chord_at(Stamp at) const {
 
 double MotionOfFixes::speed(Stamp at) const {
   const auto [left, right, share] = around(at);
-  if (left.speed_mps && right.speed_mps) return (1 - share) * *left.speed_mps + share * *right.speed_mps;
+  // Speeds over ground have no sense: a negative one is a mark of a receiver that does not know it.
+  const auto is_known = [](const Fix& fix) { return fix.speed_mps && *fix.speed_mps >= 0; };
+  if (is_known(left) && is_known(right)) return (1 - share) * *left.speed_mps + share * *right.speed_mps;
   const auto [chord, duration_s] = chord_at(at);
   return duration_s > 0 ? chord.norm() / duration_s : 0;
 }

@@ -163,7 +163,9 @@ void CanLogDecoder::take_values(Stamp stamp, std::size_t number) {
 double CanLogDecoder::value_of(const DbcSignal& signal, std::size_t index) {
   const BoundSignal& bound = bound_[index];
   const Quantity& quantity = quantities_[bound.quantity];
-  const double value = bound.factor * signal.value(frame_);
+  const double told = signal.value(frame_);
+  if (bound.missing == told) return kNoNumber;
+  const double value = bound.factor * told;
   if (std::isfinite(value) && value >= quantity.smallest && value <= quantity.largest)
     return value + bound.offset;
   ++outside_[index];

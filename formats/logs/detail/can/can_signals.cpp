@@ -134,8 +134,9 @@ BoundSignal Binder::bind(const Quantity& quantity, const ColumnRequest& wanted) 
     bound.time_power = static_cast<int>(unit.factor);
     return bound;
   }
-  bound.factor = convention.sign * unit.factor;
+  bound.factor = convention.sign * unit.factor * wanted.scale;
   bound.offset = convention.offset;
+  bound.missing = wanted.missing;
   return bound;
 }
 
@@ -198,6 +199,11 @@ const Unit& Binder::unit_of(const Quantity& quantity, const ColumnRequest& wante
   const Unit& own = quantity.units.front();
   if (own.name == "1") return own;  // flags and counts
   const Unit* unit = by_dbc.empty() ? nullptr : find_unit(quantity, by_dbc);
+  if (unit != nullptr && unit != &own && wanted.scale != 1)
+    fail(fmt::format(
+        "{}: signal {} has a scale, and by the DBC it is in '{}': state the unit of the scaled value, {}",
+        quantity.name, signal.name, signal.unit, joined(units)));
+  if (unit == nullptr && wanted.scale != 1) return own;
   if (unit != nullptr) {
     by_dbc_ +=
         fmt::format("{}{} '{}' ({})", by_dbc_.empty() ? "" : ", ", quantity.name, signal.unit, signal.name);

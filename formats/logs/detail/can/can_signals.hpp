@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,9 +19,10 @@ struct BoundSignal {
   std::size_t message = 0;   ///< index in the DBC
   std::size_t signal = 0;    ///< index in the message
   std::string interface;     ///< only frames of this interface; empty: of any interface
-  double factor = 1;         ///< quantity = factor * value + offset; the factor includes the sense
+  double factor = 1;         ///< quantity = factor * value + offset; the factor includes sense and scale
   double offset = 0;
-  int time_power = 0;  ///< for `gnss_time`, in place of the factor: the unit is 10^time_power s
+  std::optional<double> missing;  ///< a value that means "no value"
+  int time_power = 0;             ///< for `gnss_time`, in place of the factor: the unit is 10^time_power s
 };
 
 /// Returns the quantities that signals can give: those of the stream except `time`, which comes

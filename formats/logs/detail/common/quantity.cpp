@@ -202,6 +202,13 @@ const Quantity* find_quantity(std::span<const Quantity> quantities, std::string_
   return find_named(quantities, name);
 }
 
+bool has_size(const Quantity& quantity) {
+  constexpr std::array<std::string_view, 3> kMarks{"valid", kLatitudeSide.name, kLongitudeSide.name};
+  const Unit* units = quantity.units.data();
+  return units != kTimes.data() && units != kDates.data() && units != kQualityCodes.data() &&
+         std::find(kMarks.begin(), kMarks.end(), quantity.name) == kMarks.end();
+}
+
 const Unit* find_unit(const Quantity& quantity, std::string_view name) {
   return name.empty() ? &quantity.units.front() : find_named(quantity.units, name);
 }

@@ -55,6 +55,9 @@ inline constexpr std::string_view kIso8601 = "iso8601";
 /// Returns null for an unknown name.
 [[nodiscard]] const Quantity* find_quantity(std::span<const Quantity> quantities, std::string_view name);
 
+/// Tells whether the values of a quantity are numbers that have a size: no times, dates, codes or letters.
+[[nodiscard]] bool has_size(const Quantity& quantity);
+
 /// Returns null for an unknown name, and the default for an empty one.
 [[nodiscard]] const Unit* find_unit(const Quantity& quantity, std::string_view name);
 [[nodiscard]] const Convention* find_convention(const Quantity& quantity, std::string_view name);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -52,6 +53,22 @@ bool holds_values(const std::vector<std::string_view>& fields, const LogRequest&
   return is_number(field) || stamp_from_decimal_seconds(field) || stamp_from_iso8601(field);
 }
 
+/// Returns what is wrong with the scale or the number for "no value" of a request. Empty: nothing.
+std::string number_error(const Quantity& quantity, const ColumnRequest& request) {
+  if (!std::isfinite(request.scale) || request.scale == 0)
+    return fmt::format("the scale of {} is {}; expected a number other than 0", quantity.name, request.scale);
+  if (request.missing && !std::isfinite(*request.missing))
+    return fmt::format("'missing' of {} is {}; expected a number", quantity.name, *request.missing);
+  const bool is_text = find_unit(quantity, request.unit)->form == UnitForm::text;
+  if (request.scale != 1 && (is_text || !has_size(quantity)))
+    return fmt::format("{}{} is no number that a scale could multiply; leave out 'scale'", quantity.name,
+                       is_text && !request.unit.empty() ? fmt::format(" in {}", request.unit) : "");
+  if (request.missing && !has_size(quantity))
+    return fmt::format("{} is no number of which one could mean no value; leave out 'missing'",
+                       quantity.name);
+  return {};
+}
+
 bool is_default_name(const Quantity& quantity, std::string_view name) {
   return name == quantity.name || name == lower_case(quantity.default_column);
 }
@@ -88,7 +105,7 @@ std::string column_request_error(const Quantity& quantity, const ColumnRequest& 
     return fmt::format("unknown unit '{}' for {}{}; known: {}", request.unit, quantity.name,
                        did_you_mean(request.unit, known), joined(known));
   }
-  if (find_convention(quantity, request.convention) != nullptr) return {};
+  if (find_convention(quantity, request.convention) != nullptr) return number_error(quantity, request);
   if (quantity.conventions.empty()) return fmt::format("{} has no convention; leave it out", quantity.name);
   const std::vector<std::string_view> known = names_of(quantity.conventions);
   return fmt::format("unknown convention '{}' for {}{}; known: {}", request.convention, quantity.name,
@@ -245,13 +262,17 @@ void CsvColumns::bind(const Quantity& quantity, const ColumnRequest* wanted, con
   }
   const ColumnRequest plain;
   const ColumnRequest& how = wanted != nullptr ? *wanted : plain;
-  const Unit& unit = unit_of(quantity, how.unit, *field, place);
+  const Unit& unit = unit_of(quantity, how, *field, place);
   const Convention& convention = *find_convention(quantity, how.convention);
   bound.field = *field;
   bound.unit = unit.name;
   bound.form = unit.form;
-  bound.factor = convention.sign * unit.factor;
+  // The root of a variance is taken before the factor.
+  const double scale =
+      unit.form == UnitForm::square ? std::copysign(std::sqrt(std::abs(how.scale)), how.scale) : how.scale;
+  bound.factor = convention.sign * unit.factor * scale;
   bound.offset = convention.offset;
+  bound.missing = how.missing;
   if (quantity.name == "time" || quantity.name == "gnss_time")
     bound.time_power = static_cast<int>(unit.factor);
   columns_.push_back(bound);
@@ -279,19 +300,27 @@ std::optional<std::size_t> CsvColumns::field_by_default(const Quantity& quantity
   return found;
 }
 
-/// Returns the unit of a column: as stated, or as the header has it.
-const Unit& CsvColumns::unit_of(const Quantity& quantity, std::string_view stated, std::size_t field,
+/// Returns the unit of a column: as stated, or as the header has it. A scale alone gives the default unit.
+/// @throws InputError if the row of units has a word that is no unit, and if the header has a unit beside a
+/// scale alone: the scaled number may be in either
+const Unit& CsvColumns::unit_of(const Quantity& quantity, const ColumnRequest& how, std::size_t field,
                                 const std::string& place) {
+  const std::string& stated = how.unit;
   const Unit& usual = *find_unit(quantity, stated);
   if (field >= units_.size() || quantity.units.size() < 2) return usual;
   const std::string_view strange = field < strange_units_.size() ? strange_units_[field] : std::string_view();
-  if (stated.empty() && !strange.empty())
+  if (stated.empty() && !strange.empty() && how.scale == 1)
     throw InputError(fmt::format("{}the row of units has {} for {}; state its unit under columns: {}", place,
                                  quote_field(strange), quantity.name, joined(names_of(quantity.units))));
   const std::string_view written = units_[field];
   if (written.empty() || written == usual.name) return usual;
   const Unit* of_header = find_unit(quantity, written);
   const bool obeyed = stated.empty() && of_header != nullptr;
+  if (obeyed && how.scale != 1)
+    throw InputError(fmt::format(
+        "{}{} has a scale, and the header has {}: state the unit of the scaled number under columns, "
+        "{} or another",
+        place, quantity.name, written, usual.name));
   notes_.push_back(obeyed ? fmt::format("{}{} is in {} by the header", place, quantity.name, written)
                           : fmt::format("{}{} is read in {}, though the header has {}", place, quantity.name,
                                         usual.name, written));

@@ -18,11 +18,12 @@ namespace waymark::formats {
 struct BoundColumn {
   const Quantity* quantity = nullptr;
   std::size_t field = 0;
-  double factor = 1;  ///< value = sign * factor * number + offset
+  double factor = 1;  ///< value = factor * number + offset; it includes the sense and the scale
   UnitForm form = UnitForm::number;
   double offset = 0;
   std::string_view unit;
-  int time_power = 0;  ///< power of ten, for times
+  int time_power = 0;             ///< power of ten, for times
+  std::optional<double> missing;  ///< a number that means "no value"
 };
 
 /// The columns of one stream in one table.
@@ -59,7 +60,7 @@ class CsvColumns {
   [[nodiscard]] std::optional<std::size_t> field_named(std::string_view name) const;
   [[nodiscard]] std::optional<std::size_t> field_by_default(const Quantity& quantity,
                                                             const std::string& place) const;
-  [[nodiscard]] const Unit& unit_of(const Quantity& quantity, std::string_view stated, std::size_t field,
+  [[nodiscard]] const Unit& unit_of(const Quantity& quantity, const ColumnRequest& how, std::size_t field,
                                     const std::string& place);
   [[nodiscard]] std::string columns_present() const;
   [[nodiscard]] std::vector<std::string> shown_names() const;

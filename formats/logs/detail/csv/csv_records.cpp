@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -16,6 +17,27 @@
 #include <waymark/formats/text/stamp_text.hpp>
 
 namespace waymark::formats {
+namespace {
+
+/// Tells which figures of accuracy a table has. Stated ones come before those that have default names.
+std::function<bool(std::string_view)> figures_of(const CsvColumns& columns, const LogRequest& request) {
+  const auto states = [&](const std::string& first, const std::string& second) {
+    return request.columns.contains(first) || request.columns.contains(second);
+  };
+  const bool sigmas = states("sigma_east", "sigma_north");
+  const bool axes = states("accuracy_east", "accuracy_north");
+  const bool radius = states("accuracy", "accuracy");
+  return [&columns, sigmas, axes, radius](std::string_view name) {
+    if (columns.find(name) == nullptr) return false;
+    if (!sigmas && !axes && !radius) return true;
+    if (name.starts_with("sigma_")) return sigmas;
+    if (name.starts_with("accuracy_")) return axes;
+    return name != "accuracy" || radius;
+  };
+}
+
+}  // namespace
+
 CsvRecords::CsvRecords(const CsvColumns& columns, const std::string& path, LogRequest request, LogData& data)
     : bound_(columns),
       field_count_(columns.field_count()),
@@ -23,12 +45,14 @@ CsvRecords::CsvRecords(const CsvColumns& columns, const std::string& path, LogRe
       request_(std::move(request)),
       data_(data),
       positions_(path, request_, nullptr),
-      filtered_(columns.filtered()) {
+      wraps_(bound_.time),
+      filtered_(columns.filtered()),
+      unknown_speed_(request_.stream == StreamKind::sensor ? nullptr : bound_.speed),
+      unknown_course_(request_.stream == StreamKind::sensor ? nullptr : bound_.course) {
   offset_ = request_.gps_week * kGpsWeekNanoseconds + std::llround(request_.time_offset_s * 1e9);
   require_date(path);
   if (request_.stream == StreamKind::gnss && request_.readings.empty()) {
-    const auto has = [&](std::string_view name) { return columns.find(name) != nullptr; };
-    accuracy_ = choose_accuracy(has, path, request_, data.notes);
+    accuracy_ = choose_accuracy(figures_of(columns, request_), path, request_, data.notes);
     accuracy_east_ = columns.find(accuracy_.east);
     accuracy_north_ = columns.find(accuracy_.north);
     covariance_root_ = columns.find(accuracy_.covariance_root);
@@ -43,6 +67,7 @@ void CsvRecords::read_line(std::string_view line, std::size_t number) {
   complaint_ = {};
   number_ = number;
   if (check_fields()) {
+    wraps_.see(fields_[bound_.time->field]);
     if (!is_wanted()) {
       --data_.records;
       ++unwanted_;
@@ -134,9 +159,28 @@ bool CsvRecords::read_details(GeodeticFix& fix) {
   return true;
 }
 
+/// Some logs have -1 for a speed or a course that is not known: read as reversing, it spoils the drive.
+void CsvRecords::take_out_unknown() {
+  for (const UnknownMarks* marks : {&unknown_speed_, &unknown_course_}) {
+    if (!marks->found()) continue;
+    const BoundColumn& column = marks->column();
+    const std::size_t count = take_out_marks(*marks, request_, data_);
+    if (count > 0)
+      data_.notes.push_back(fmt::format(
+          "{}: {} values of {} are -1 {}, and no other one is negative: they are taken as not known (as 'missing: "
+          "-1' of the column says; 'missing' with another number keeps them)",
+          path_, count, column.quantity->name, column.unit));
+  }
+}
+
 void CsvRecords::finish() {
+  take_out_unknown();
   if (unwanted_ > 0)
     data_.notes.push_back(fmt::format("{}: {} rows are left out by 'where'", path_, unwanted_));
+  if (wraps_.falls() > 0)
+    data_.notes.push_back(fmt::format(
+        "{}: the times are those of a counter of 32 bits: {} of its ends (2^32 {}) {} in the log, and they go on",
+        path_, wraps_.falls(), bound_.time->unit, wraps_.falls() == 1 ? "is" : "are"));
   if (strange_qualities_ > 0)
     data_.notes.push_back(fmt::format(
         "{}: {} values of quality, such as {}, are none that is known (words, or numbers of the unit gga, rtklib "
@@ -222,7 +266,8 @@ std::optional<Stamp> CsvRecords::stamp() {
     return std::nullopt;
   }
   if (request_.time_scale == TimeScale::gps && bound_.date == nullptr) stamp = weeks_.continued(*stamp);
-  if (__builtin_add_overflow(stamp->nanoseconds, offset_, &stamp->nanoseconds)) {
+  if (__builtin_add_overflow(stamp->nanoseconds, wraps_.added_ns(), &stamp->nanoseconds) ||
+      __builtin_add_overflow(stamp->nanoseconds, offset_, &stamp->nanoseconds)) {
     complain(*bound_.time, fmt::format("{} is too large for a stamp", quote_field(field)));
     return std::nullopt;
   }
@@ -238,6 +283,11 @@ std::optional<double> CsvRecords::given_number(const BoundColumn& column, std::s
   return plain ? std::copysign(std::sqrt(std::abs(*plain)), *plain) : plain;
 }
 
+/// Tells whether a field holds the number that means "no value".
+bool CsvRecords::is_missing(const BoundColumn& column, std::string_view field) const {
+  return column.missing && number_from_field(field, request_.separator) == column.missing;
+}
+
 double CsvRecords::number(const BoundColumn* column, bool required) {
   if (column == nullptr) return kNoNumber;
   const std::string_view field = fields_[column->field];
@@ -250,10 +300,12 @@ double CsvRecords::number(const BoundColumn* column, bool required) {
                                   quote_field(field)));
     return kNoNumber;
   }
-  if (std::isnan(*given)) {
+  if (std::isnan(*given) || is_missing(*column, field)) {
     if (required) complain(*column, "no value");
     return kNoNumber;
   }
+  unknown_speed_.see(column, *given);
+  unknown_course_.see(column, *given);
   const Quantity& quantity = *column->quantity;
   // the range is for the given angle, before any offset
   const double scaled = column->factor * *given;

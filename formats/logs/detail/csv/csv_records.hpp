@@ -12,9 +12,11 @@
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/common/position_stream.hpp>
 #include <waymark/formats/logs/detail/common/table_accuracy.hpp>
+#include <waymark/formats/logs/detail/csv/counter_wraps.hpp>
 #include <waymark/formats/logs/detail/csv/csv_bindings.hpp>
 #include <waymark/formats/logs/detail/csv/csv_columns.hpp>
 #include <waymark/formats/logs/detail/csv/table_time.hpp>
+#include <waymark/formats/logs/detail/csv/unknown_marks.hpp>
 #include <waymark/formats/logs/detail/place/utm.hpp>
 
 namespace waymark::formats {
@@ -55,6 +57,7 @@ class CsvRecords {
   [[nodiscard]] std::optional<TableInstant> instant_of_day(const BoundColumn& column, std::string_view field);
   void require_date(const std::string& path) const;
   [[nodiscard]] std::optional<Stamp> stamp();
+  [[nodiscard]] bool is_missing(const BoundColumn& column, std::string_view field) const;
   [[nodiscard]] double number(const BoundColumn* column, bool required);
   [[nodiscard]] std::optional<double> given_number(const BoundColumn& column, std::string_view field) const;
   [[nodiscard]] double angle(const BoundColumn* column, const BoundColumn* hemisphere);
@@ -65,6 +68,7 @@ class CsvRecords {
   [[nodiscard]] std::optional<Position> position_on_grid(double easting_m, double northing_m);
   void set_covariance(GeodeticFix& fix, const GridAxes& axes);
   void complain(const BoundColumn& column, std::string what);
+  void take_out_unknown();
 
   Bindings bound_;
   /// of a sensor, in the order of LogRequest::readings; null: there is no such column
@@ -80,8 +84,10 @@ class CsvRecords {
   Stamp last_of_day_{};                  ///< of a log without a column of dates
   std::int64_t days_ = 0;                ///< midnights since its first time of day
   WeekCount weeks_;                      ///< of a log whose times may be those of a week
+  CounterWraps wraps_;                   ///< of a log whose times may be a counter of 32 bits
   std::optional<std::size_t> filtered_;  ///< field that decides
   std::size_t unwanted_ = 0;
+  UnknownMarks unknown_speed_, unknown_course_;
   std::size_t strange_qualities_ = 0;
   std::string strange_quality_;  ///< the first one
 

@@ -288,6 +288,11 @@ TEST_CASE("frozen: a gap that fixes cover is filled with their motion, others an
   CHECK(distance_of(covered) == Approx(true_distance).epsilon(0.01));
   CHECK(build_timeline(covered.odometry, {}, {}).intervals[310].bridged);
 
+  Scene marked = with_gap(30, 60);  // -1 of a receiver that does not know its speed
+  for (Fix& fix : marked.fixes) fix.speed_mps = -1;
+  CHECK(fill_gaps(marked.odometry, marked.fixes, 0.5) == 1);
+  CHECK(distance_of(marked) == Approx(true_distance).epsilon(0.01));
+
   Scene tunnel = with_gap(30, 60);
   std::erase_if(tunnel.fixes,
                 [](const Fix& fix) { return fix.stamp.seconds() > 40 && fix.stamp.seconds() < 46; });

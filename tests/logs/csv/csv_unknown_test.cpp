@@ -1,0 +1,93 @@
+// A speed or a course of -1 that means "not known", as in logs of iOS.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include <waymark/formats/logs/channels.hpp>
+#include <waymark/formats/logs/detail/csv/csv_log.hpp>
+
+namespace csv_unknown_test {
+
+using namespace waymark;
+using namespace waymark::formats;
+
+namespace {
+
+LogRequest request(StreamKind stream) {
+  LogRequest request;
+  request.stream = stream;
+  request.default_sigma_m = 1;
+  return request;
+}
+
+LogData read(const std::string& text, const LogRequest& request) {
+  return CsvLogReader().read(text, "log.csv", request);
+}
+
+/// Returns a table of speeds with yaw rates of 0, one a second.
+std::string speeds(std::initializer_list<const char*> numbers) {
+  std::string text = "time,speed,yaw_rate\n";
+  int time = 0;
+  for (const char* number : numbers) text += std::to_string(time++) + "," + number + ",0\n";
+  return text;
+}
+
+std::size_t notes_of_marks(const LogData& data) {
+  return static_cast<std::size_t>(std::count_if(
+      data.notes.begin(), data.notes.end(),
+      [](const std::string& note) { return note.find("taken as not known") != std::string::npos; }));
+}
+
+}  // namespace
+
+TEST_CASE("csv: speeds of -1 are not known where no other one is negative, in each kind of stream") {
+  const LogData whole = read(speeds({"-1", "0.4", "-1.0", "-1"}), request(StreamKind::odometry));
+  REQUIRE(whole.odometry.size() == 1);
+  CHECK(whole.odometry[0].speed_mps == 0.4);
+  CHECK(whole.corrupt == 0);
+  CHECK(
+      whole.notes.back() ==
+      "log.csv: 3 values of speed are -1 m/s, and no other one is negative: they are taken as not known (as "
+      "'missing: -1' of the column says; 'missing' with another number keeps them)");
+
+  LogRequest parts = request(StreamKind::odometry);
+  parts.readings = odometry_channels();
+  parts.columns["speed"] = {"speed", "km/h", ""};
+  const LogData readings = read(speeds({"-1", "3.6", "-1", "-1"}), parts);
+  REQUIRE(readings.readings.size() == 4);
+  CHECK(std::isnan(readings.readings.at(0, 0)));
+  CHECK(readings.readings.at(1, 0) == Approx(1));
+  CHECK(readings.readings.at(3, 1) == 0);  // the yaw rate of the row stays
+
+  const LogData fixes = read(
+      "time,latitude,longitude,speed,course\n0,50,15,-1,-1\n1,50,15,0.5,359.5\n2,50,15,-1,-1\n3,50,15,-1,-1\n",
+      request(StreamKind::gnss));
+  REQUIRE(fixes.fixes.size() == 4);
+  CHECK_FALSE(fixes.fixes[0].speed_mps);
+  CHECK_FALSE(fixes.fixes[0].course_rad);
+  CHECK(fixes.fixes[1].speed_mps == 0.5);
+  CHECK(fixes.fixes[1].course_rad);
+  CHECK(notes_of_marks(fixes) == 2);
+}
+
+TEST_CASE(
+    "csv: speeds of -1 are reversing beside other negative ones, if they are few, and in whole numbers") {
+  const auto kept = [](const std::string& text, const LogRequest& how) {
+    const LogData data = read(text, how);
+    CHECK(notes_of_marks(data) == 0);
+    return std::count_if(data.odometry.begin(), data.odometry.end(),
+                         [](const OdometrySample& sample) { return sample.speed_mps == -1; });
+  };
+  const LogRequest plain = request(StreamKind::odometry);
+  CHECK(kept(speeds({"-1", "0.5", "-1", "-1", "-0.5"}), plain) == 3);
+  CHECK(kept(speeds({"-1", "0.5", "-1", "0.7"}), plain) == 2);
+  // A bus of whole m/s reaches -1 first when it reverses.
+  CHECK(kept(speeds({"3", "0", "-1", "-1", "-1", "0"}), plain) == 3);
+  LogRequest stated = plain;
+  stated.columns["speed"] = {"speed", "", "", 1, -999.0};
+  CHECK(kept(speeds({"-1", "0.5", "-1", "-1"}), stated) == 3);
+}
+
+}  // namespace csv_unknown_test
