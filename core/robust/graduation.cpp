@@ -13,6 +13,7 @@
 #include <waymark/core/linear/block_symbolic.hpp>
 #include <waymark/core/robust/chi_square.hpp>
 #include <waymark/core/robust/detail/moved_errors.hpp>
+#include <waymark/core/robust/detail/wrong_places.hpp>
 #include <waymark/core/robust/graduation.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/core/system/structure.hpp>
@@ -92,6 +93,10 @@ class Graduation {
   bool is_implausible() const;
   bool ends_badly(double share) const;
   bool outliers_agree(double share) const;
+  double cost(const Verdict& verdict);
+  double cost_by_edges(const Verdict& verdict) const;
+  void doubt();
+  void doubt_best();
   double bound(EdgePlace place) const;
   double price(EdgePlace place) const;
   std::vector<EdgePlace> beyond_bound() const;
@@ -123,8 +128,10 @@ class Graduation {
   std::vector<EdgePlace> trusted_;                 // the other ones
   std::vector<std::vector<EdgePlace>> parallels_;  // groups of candidates that would be trusted alone
   std::vector<std::vector<EdgePlace>> judged_;     // splits whose minimum is known
+  std::optional<detail::WrongPlaces> wrong_places_;
   Verdict best_;
-  bool dense_ = false;  // all edges together would take too long
+  Verdict best_by_edges_;  // the cheapest one if every edge of a group counted
+  bool dense_ = false;     // all edges together would take too long
   bool interrupted_ = false;
   GraduationResult result_;
 };
@@ -139,6 +146,8 @@ void Graduation::find_candidates() {
     }
   }
   result_.candidates = candidates_.size();
+  wrong_places_.emplace(graph_, trusted_, algorithm_, solver_,
+                        [this](EdgePlace place) { return bound(place); });
   if (!options_.doubts_trusted) return;
   parallels_ = contradicting_parallels(graph_, trusted_, algorithm_, solver_, options_.inlier_probability);
   for (const std::vector<EdgePlace>& group : parallels_) move_to_candidates(group);
@@ -161,6 +170,23 @@ double Graduation::bound(EdgePlace place) const {
 double Graduation::price(EdgePlace place) const {
   constexpr double kOfTrusted = 2;
   return (options_.trusted(graph_, place) ? kOfTrusted : 1.0) * bound(place);
+}
+
+// A trusted edge is against whole places, not against each of their closures.
+// @param verdict whose values are those of the graph
+double Graduation::cost(const Verdict& verdict) {
+  std::vector<EdgePlace> outliers = verdict.outliers;
+  const auto closures = std::stable_partition(
+      outliers.begin(), outliers.end(), [&](EdgePlace place) { return options_.trusted(graph_, place); });
+  double result = verdict.summary.final_chi2;
+  for (auto place = outliers.begin(); place != closures; ++place) result += price(*place);
+  return result + wrong_places_->price(graph_, std::span(closures, outliers.end()));
+}
+
+double Graduation::cost_by_edges(const Verdict& verdict) const {
+  double result = verdict.summary.final_chi2;
+  for (const EdgePlace place : verdict.outliers) result += price(place);
+  return result;
 }
 
 std::vector<EdgePlace> Graduation::beyond_bound() const {
@@ -283,6 +309,7 @@ std::optional<std::vector<EdgePlace>> Graduation::grown_from(std::vector<EdgePla
   constexpr double kTogether = 2;  // of the looseness, between the first and the last that return at a time
   out = without_joining(out);
   if (!may_be_grown(without_edges(graph_, out))) return std::nullopt;
+  Verdict cheapest;
   std::vector<EdgePlace> refused;  // had returned, and were contradicted by others
   for (int split = 0; split < kMaxSplits; ++split) {
     Verdict verdict;
@@ -292,7 +319,8 @@ std::optional<std::vector<EdgePlace>> Graduation::grown_from(std::vector<EdgePla
       break;  // the remaining edges determine no solution
     }
     if (interrupted_) break;
-    if (verdict.cost < best_.cost) best_ = verdict;
+    verdict.cost = cost_by_edges(verdict);  // growing lowers both costs
+    if (verdict.cost < cheapest.cost) cheapest = verdict;
     const Graph kept = without_edges(graph_, verdict.outliers);
     const std::vector<Innovation> innovation =
         innovations(graph_, verdict.outliers, Membership::outside, kept);
@@ -316,6 +344,11 @@ std::optional<std::vector<EdgePlace>> Graduation::grown_from(std::vector<EdgePla
     }
     std::sort(out.begin(), out.end());
     std::sort(refused.begin(), refused.end());
+  }
+  if (!cheapest.values.empty()) {
+    graph_.set_values(cheapest.values);
+    cheapest.cost = cost(cheapest);
+    if (cheapest.cost < best_.cost) best_ = std::move(cheapest);
   }
   return out;
 }
@@ -352,8 +385,6 @@ Verdict Graduation::optimize_without(std::vector<EdgePlace> outliers) {
   ++result_.passes;
   graph_.set_values(kept.values());
   verdict.values = kept.values();
-  verdict.cost = verdict.summary.final_chi2;
-  for (const EdgePlace place : outliers) verdict.cost += price(place);
   verdict.outliers = std::move(outliers);
   return verdict;
 }
@@ -431,6 +462,9 @@ void Graduation::judge(std::vector<EdgePlace> outliers) {
       return;  // the remaining edges determine no solution, so there is no split to choose
     }
     if (interrupted_) return;
+    verdict.cost = cost_by_edges(verdict);
+    if (verdict.cost < best_by_edges_.cost) best_by_edges_ = verdict;
+    verdict.cost = cost(verdict);
     outliers = still_out(verdict, returned);
     if (verdict.cost < best_.cost || best_.values.empty()) best_ = std::move(verdict);
   }
@@ -533,6 +567,22 @@ bool Graduation::doubt_trusted() {
   return best_.cost < before;
 }
 
+void Graduation::doubt() {
+  for (int round = 0; round < kMaxDoubts && doubt_trusted(); ++round) search();
+}
+
+// A wrong trusted edge shows only if the right closures over it are kept. They may be cheaper outside, as few
+// places, than with a bent odometry inside; not where each of them counts.
+void Graduation::doubt_best() {
+  doubt();
+  if (best_by_edges_.values.empty() || best_by_edges_.outliers == best_.outliers) return;
+  apart([&] {
+    best_ = std::move(best_by_edges_);
+    best_.cost = std::numeric_limits<double>::infinity();
+    doubt();
+  });
+}
+
 // Tells whether the kept edges contradict each other, by chi2 of the best split.
 bool Graduation::is_implausible() const {
   std::int64_t freedom = -best_.summary.unknowns;
@@ -581,10 +631,10 @@ GraduationResult Graduation::run() {
   if (best_.values.empty()) {
     if (!dense_) graph_.set_values(of_all_edges);
     best_ = optimize_without(dense_ ? without_joining(candidates_) : std::vector<EdgePlace>{});
+    best_.cost = cost(best_);
   }
   // 3. Doubt what was trusted: single edges, and all of them if they cost many of the others.
-  for (int round = 0; round < kMaxDoubts && suspicious && options_.doubts_trusted && doubt_trusted(); ++round)
-    search();
+  if (suspicious && options_.doubts_trusted) doubt_best();
   if (!interrupted_ && !dense_ && options_.doubts_trusted && suspicious && outliers_agree(kManyOutliers)) {
     graph_.set_values(of_all_edges);
     std::vector<EdgePlace> all = trusted_;

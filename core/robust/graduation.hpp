@@ -10,8 +10,10 @@
 /// that agree among themselves, the group that fits best then wins, and not one that bends the
 /// graph just inside the gate. The verdict does not use a loss. Over splits of the candidates into
 /// kept edges and outliers it minimises
-///   cost = chi2 at the minimum of the kept edges + chi-square quantile of each outlier
-/// (truncated least squares). A first split is grown, or follows from the errors of the edges. Then
+///   cost = chi2 at the minimum of the kept edges + price of the outliers.
+/// An edge costs its chi-square quantile (truncated least squares), a trusted one twice as much.
+/// Consecutive edges that agree with each other are one mistake, and cost little more than one of them
+/// (detail/wrong_places.hpp). A first split is grown, or follows from the errors of the edges. Then
 /// the cost is lowered edge by edge: an outlier returns if its innovation (edge_selection.hpp) is
 /// within the quantile, and a kept edge beyond it goes. The best width depends on how accurate the stated
 /// noise is. So there are verdicts at stretch 16, 4 and 1 of the last width, and the one with the

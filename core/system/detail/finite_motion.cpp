@@ -56,6 +56,7 @@ void move(Graph& graph, VertexIndex v, const FiniteMotion& motion) {
 std::optional<FiniteMotion> motion_to_agree(const EdgeBatchBase& batch, std::size_t edge, Graph& graph,
                                             std::span<const VertexIndex> moved) {
   constexpr int kSteps = 10;
+  constexpr double kNoStep = 1e-12;  // of metres and radians
   std::vector<std::vector<double>> before;
   for (const VertexIndex v : moved) {
     if (graph.vertex_type(v).rigid_motion == nullptr) return std::nullopt;
@@ -78,6 +79,7 @@ std::optional<FiniteMotion> motion_to_agree(const EdgeBatchBase& batch, std::siz
     const FiniteMotion next = about(place.centre, way[2], way.head<2>());
     for (const VertexIndex v : moved) move(graph, v, next);
     motion = followed(motion, next);
+    if (way.norm() <= kNoStep * (1 + motion.shift.norm())) break;
   }
   for (std::size_t i = 0; i < moved.size(); ++i) graph.set_value(moved[i], before[i]);
   if (!std::isfinite(motion.turn) || !motion.shift.allFinite() || !error.allFinite()) return std::nullopt;

@@ -1,0 +1,221 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/robust/detail/moved_errors.hpp>
+#include <waymark/core/robust/detail/wrong_places.hpp>
+#include <waymark/core/system/detail/finite_motion.hpp>
+
+namespace waymark::detail {
+namespace {
+
+/// Ends of two closures in a row are at most so many ids apart.
+constexpr std::int64_t kGap = 2;
+/// Probability that a false closure is followed by another one of the same mistake.
+constexpr double kGoesOn = 0.7;
+
+/// An edge between two places of a drive.
+struct Closure {
+  std::int64_t earlier;  // ids of its ends
+  std::int64_t later;
+  VertexIndex moved;  // the later one
+  EdgePlace place;
+};
+
+Closure closure_of(const Graph& graph, EdgePlace place) {
+  const std::span<const VertexIndex> ends = graph.batch(place.batch).vertices(place.edge);
+  const std::int64_t first = to_number(graph.id(ends[0]));
+  const std::int64_t second = to_number(graph.id(ends[1]));
+  if (first < second) return {first, second, ends[1], place};
+  return {second, first, ends[0], place};
+}
+
+std::optional<FiniteMotion> motion_wanted_by(const Closure& closure, Graph& graph) {
+  return motion_to_agree(graph.batch(closure.place.batch), closure.place.edge, graph,
+                         std::array{closure.moved});
+}
+
+double squared_error_at(const FiniteMotion& motion, const Closure& closure, Graph& graph) {
+  return squared_error_after(graph.batch(closure.place.batch), closure.place.edge, graph,
+                             std::array{closure.moved}, motion);
+}
+
+/// Closures in the order of their earlier ends, of which groups are taken out.
+class Closures {
+ public:
+  Closures(const Graph& graph, std::span<const EdgePlace> edges) {
+    for (const EdgePlace place : edges) closures_.push_back(closure_of(graph, place));
+    std::sort(closures_.begin(), closures_.end(), [](const Closure& a, const Closure& b) {
+      return std::pair(a.earlier, a.later) < std::pair(b.earlier, b.later);
+    });
+    taken_.assign(closures_.size(), 0);
+  }
+
+  /// Returns the edges that see the same wrong place as the first one that is left, ascending.
+  /// None: no edge is left.
+  /// @param agree tells whether two neighbours see the same
+  template <typename Agree>
+  std::vector<EdgePlace> take_group(Agree agree) {
+    while (first_ < closures_.size() && taken_[first_] != 0) ++first_;
+    std::vector<EdgePlace> result;
+    if (first_ == closures_.size()) return result;
+    std::vector<std::size_t> members{first_};
+    taken_[first_] = 1;
+    for (std::size_t next = 0; next < members.size(); ++next) {
+      const Closure& member = closures_[members[next]];
+      result.push_back(member.place);
+      for (const std::size_t other : neighbours(member)) {
+        if (!agree(member, closures_[other])) continue;
+        taken_[other] = 1;
+        members.push_back(other);
+      }
+    }
+    std::sort(result.begin(), result.end());
+    return result;
+  }
+
+ private:
+  /// Returns the closures beside one that are not taken.
+  [[nodiscard]] std::vector<std::size_t> neighbours(const Closure& of) const {
+    std::vector<std::size_t> result;
+    const auto first = std::partition_point(closures_.begin(), closures_.end(), [&](const Closure& other) {
+      return other.earlier < of.earlier - kGap;
+    });
+    for (auto other = first; other != closures_.end() && other->earlier <= of.earlier + kGap; ++other) {
+      const auto index = static_cast<std::size_t>(other - closures_.begin());
+      if (taken_[index] == 0 && std::abs(other->later - of.later) <= kGap) result.push_back(index);
+    }
+    return result;
+  }
+
+  std::vector<Closure> closures_;
+  std::vector<char> taken_;
+  std::size_t first_ = 0;  // all before it are taken
+};
+
+/// A graph of a group of closures and of the two ways that they join. A vertex on both ways is there twice.
+class TwoWays {
+ public:
+  void add_closure(const Graph& from, EdgePlace place) {
+    const VertexIndex moved = closure_of(from, place).moved;
+    add(from, place, [&](VertexIndex v) { return v == moved; });
+    if (first_moved_ < 0) first_moved_ = copies_.at({true, moved});
+  }
+
+  void add_odometry(const Graph& from, EdgePlace place, bool later) {
+    add(from, place, [&](VertexIndex) { return later; });
+  }
+
+  /// Moves the later way to where the first closure wants it.
+  void bring_together() {
+    const std::optional<FiniteMotion> motion =
+        motion_to_agree(graph_.batch(0), 0, graph_, std::array{first_moved_});
+    if (!motion) return;
+    for (const auto& [of, copy] : copies_)
+      if (of.first) move(graph_, copy, *motion);
+  }
+
+  [[nodiscard]] Graph& graph() { return graph_; }
+
+ private:
+  template <typename IsLater>
+  void add(const Graph& from, EdgePlace place, IsLater is_later) {
+    const EdgeBatchBase& batch = from.batch(place.batch);
+    std::vector<VertexIndex> vertices;
+    for (const VertexIndex v : batch.vertices(place.edge)) {
+      const auto [copy, is_new] = copies_.try_emplace({is_later(v), v}, 0);
+      const VertexId id{static_cast<std::int64_t>(copies_.size())};
+      if (is_new) copy->second = graph_.add_vertex(from.vertex_type(v), id, from.value(v));
+      vertices.push_back(copy->second);
+    }
+    std::vector<double> fields;
+    batch.fields(place.edge, fields);
+    graph_.add_edge(from.edge_type(place.batch), vertices, fields, batch.information(place.edge));
+  }
+
+  Graph graph_;
+  std::map<std::pair<bool, VertexIndex>, VertexIndex> copies_;  // of those of the earlier and the later way
+  VertexIndex first_moved_ = -1;
+};
+
+}  // namespace
+
+WrongPlaces::WrongPlaces(const Graph& graph, std::span<const EdgePlace> odometry, Algorithm& algorithm,
+                         LinearSolver& solver, std::function<double(EdgePlace)> price)
+    : algorithm_(algorithm), solver_(solver), price_(std::move(price)) {
+  for (const EdgePlace place : odometry) {
+    if (graph.batch(place.batch).vertices(place.edge).size() != 2) continue;
+    const Closure ends = closure_of(graph, place);
+    if (ends.later == ends.earlier + 1) odometry_.emplace(ends.earlier, place);
+  }
+}
+
+double WrongPlaces::price(Graph& at, std::span<const EdgePlace> edges) {
+  double result = 0;
+  std::vector<EdgePlace> pairs;
+  for (const EdgePlace place : edges) {
+    if (at.batch(place.batch).vertices(place.edge).size() == 2)
+      pairs.push_back(place);
+    else
+      result += price_(place);
+  }
+  const Closure* asked = nullptr;
+  std::optional<FiniteMotion> motion;
+  const auto agree = [&](const Closure& one, const Closure& other) {
+    if (asked != &one) motion = motion_wanted_by(one, at);
+    asked = &one;
+    if (!motion) return false;
+    if (squared_error_at(*motion, other, at) <= price_(other.place))
+      return true;  // whatever the odometry's noise
+    std::vector<EdgePlace> both{one.place, other.place};
+    std::sort(both.begin(), both.end());
+    return chi2_alone(at, both) <= price_(other.place);
+  };
+  Closures closures(at, pairs);
+  for (std::vector<EdgePlace> group; !(group = closures.take_group(agree)).empty();)
+    result += group.size() == 1 ? price_(group[0]) : price_of_group(at, group);
+  return result;
+}
+
+double WrongPlaces::price_of_group(const Graph& at, const std::vector<EdgePlace>& group) {
+  double apart = 0;
+  for (const EdgePlace place : group) apart += price_(place);
+  const double goes_on = -2 * std::log(kGoesOn) * static_cast<double>(group.size() - 1);
+  return std::min(apart, price_(group[0]) + chi2_alone(at, group) + goes_on);
+}
+
+double WrongPlaces::chi2_alone(const Graph& at, const std::vector<EdgePlace>& group) {
+  const auto [known, is_new] = known_.try_emplace(group, 0);
+  if (is_new) known->second = computed_chi2(at, group);
+  return known->second;
+}
+
+double WrongPlaces::computed_chi2(const Graph& at, const std::vector<EdgePlace>& group) const {
+  TwoWays ways;
+  std::set<std::int64_t> ends[2];
+  for (const EdgePlace place : group) {
+    const Closure closure = closure_of(at, place);
+    ends[0].insert(closure.earlier);
+    ends[1].insert(closure.later);
+    ways.add_closure(at, place);
+  }
+  for (const bool later : {false, true}) {
+    const auto last = odometry_.lower_bound(*ends[later].rbegin());
+    for (auto edge = odometry_.lower_bound(*ends[later].begin()); edge != last; ++edge)
+      ways.add_odometry(at, edge->second, later);
+  }
+  ways.bring_together();
+  try {
+    return optimize(ways.graph(), algorithm_, solver_, {}).final_chi2;
+  } catch (const InputError&) {
+    return std::numeric_limits<double>::infinity();  // alone they determine no solution
+  }
+}
+
+}  // namespace waymark::detail
