@@ -289,7 +289,9 @@ const Dialect kDialects[] = {
        return fmt::format("{}.0,{},0,{:.9f},{:.9f}", 1599998400 + s, 1599998395 + s, lat, lon);
      }},
     {"topics before the members", "__time,/fix/latitude,/fix/longitude\n",
-     [](int s, double lat, double lon) { return fmt::format("{}.0,{:.9f},{:.9f}", 1599998400 + s, lat, lon); }},
+     [](int s, double lat, double lon) {
+       return fmt::format("{}.0,{:.9f},{:.9f}", 1599998400 + s, lat, lon);
+     }},
     {"two receivers", "time_unix,receiver,lat,lon\n",
      [](int s, double lat, double lon) {
        return fmt::format("{0},front,{1:.9f},{2:.9f}\n{0},rear,{3:.9f},{2:.9f}", 1599998400 + s, lat, lon,

@@ -181,7 +181,8 @@ TEST_CASE("late quantity: without it the samples are those of an odometry on tim
   }
 }
 
-TEST_CASE("late quantity: delays are stated by their keys, or by parts with different offsets, but not by zones") {
+TEST_CASE(
+    "late quantity: delays are stated by their keys, or by parts with different offsets, but not by zones") {
   OdometryConfig odometry;
   odometry.logs.resize(2);
   CHECK_FALSE(states_delays(odometry));
