@@ -38,8 +38,8 @@ std::vector<std::string_view> views_of(const std::vector<std::string>& names) {
 }
 
 /// Tells whether the first line of a table already holds values. It does if all fields are numbers,
-/// or if the time column is given by number and its field is a time (or a number, in another unit). The second rule is for
-/// headerless tables with dates and words.
+/// or if the time column is given by number and its field is a time (or a number, in another unit).
+/// The second rule is for headerless tables with dates and words.
 bool holds_values(const std::vector<std::string_view>& fields, const LogRequest& request) {
   const auto is_number = [&](std::string_view field) {
     return number_from_field(field, request.separator).has_value();
