@@ -288,6 +288,14 @@ const Dialect kDialects[] = {
      [](int s, double lat, double lon) {
        return fmt::format("{}.0,{},0,{:.9f},{:.9f}", 1599998400 + s, 1599998395 + s, lat, lon);
      }},
+    {"trailing separators", "time_unix,lat,lon,,,,\n",
+     [](int s, double lat, double lon) {
+       return fmt::format("{},{:.9f},{:.9f},,,,", 1599998400 + s, lat, lon);
+     }},
+    {"seconds and their fractions", "stamp_sec,stamp_nsec,lat,lon\n",
+     [](int s, double lat, double lon) {
+       return fmt::format("{},0,{:.9f},{:.9f}", 1599998400 + s, lat, lon);
+     }},
     {"topics before the members", "__time,/fix/latitude,/fix/longitude\n",
      [](int s, double lat, double lon) {
        return fmt::format("{}.0,{:.9f},{:.9f}", 1599998400 + s, lat, lon);

@@ -335,6 +335,11 @@ TEST_CASE("inspection: names of columns and signals say quantity, unit and sense
   CHECK(told("Speed (OBD)(km/h)") == "speed|km/h|");
   CHECK(told("/odom/twist/twist/angular/z") == "yaw_rate||");
   CHECK(told("/fix/latitude") == "latitude||");
+  CHECK(told("/odom/pose/pose/orientation/w") == "||");
+  CHECK(told("Breite [m]") == "||");
+  CHECK(told("GEOGRAPHISCHE LÄNGE") == "longitude||");
+  CHECK(told("speed\xC2\xA0[km/h]") == "speed|km/h|");
+  CHECK(told("vel m/s up") == "||");
   CHECK(told("utcTimeMillis") == "time|ms|");
   CHECK(told("TOW [0.001 s]") == "time|ms|");
   CHECK(told("HAccuracy [0.01 m]") == "accuracy|cm|");

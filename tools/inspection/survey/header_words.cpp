@@ -23,7 +23,7 @@ constexpr std::array kKnown{
         "t|time|timestamp|time stamp|stamp|gps sow|gps tow|gps time|gps seconds|sow|tow|itow|seconds of week|"
         "time of week|t gps|t gps clock|gps week second|gps second|week second|week seconds|unix|unix time|epoch|posix time|t unix|utc|utc "
         "time|gps time unix|time unix|time utc|time gps|time epoch|seconds|secs|sec|datetime|date time|gps timestamp|host time|log time|"
-        "t s|t utc|zeit|zeitstempel|temps|heure|horodatage|tiempo|hora|gpst|gpstime|gps seconds of week|gps time of week|rostime|ros time|header stamp|millis|micros"},
+        "t s|t utc|zeit|zeitstempel|horodatage|tiempo|hora|gpst|gpstime|gps seconds of week|gps time of week|rostime|ros time|header stamp|millis|micros"},
     Known{
         "latitude",
         "lat|latitude|gps lat|gps latitude|gnss lat|gnss latitude|pos lat|breite|breitengrad|geographische breite|latitud"},
@@ -50,8 +50,8 @@ constexpr std::array kKnown{
           "heading acc|heading accuracy|course acc|course accuracy|head acc|epd|track accuracy"},
     Known{
         "course",
-        "course|cog|track|bearing|course over ground|head mot|heading motion|gps course|gps heading|gcrs|crs|kurs|kurs über grund|kurs ueber grund|rumbo"},
-    Known{"heading", "heading|yaw|azimuth|hdg|psi|gierwinkel|cap|lacet|guiñada"},
+        "course|cog|track|bearing|course over ground|head mot|heading motion|gps course|gps heading|gcrs|kurs|kurs über grund|kurs ueber grund|rumbo"},
+    Known{"heading", "heading|yaw|azimuth|hdg|psi|gierwinkel|lacet|guiñada"},
     Known{"valid", "valid|fix|fix valid|gps valid|position valid|pos valid|fix ok"},
     Known{"quality",
           "q|quality|fix quality|gga mode|gga quality|gps quality|gnss quality|fix type|fixtype|solution|sol "
@@ -257,6 +257,18 @@ bool names_component(std::span<const std::string> words) {
   });
 }
 
+bool is_coordinate(std::string_view quantity) {
+  return quantity == "latitude" || quantity == "longitude";
+}
+
+/// "Breite [m]" is a width.
+bool names_length(std::span<const std::string> words) {
+  return std::any_of(words.begin(), words.end(), [](const std::string& word) {
+    const std::string_view unit = formats::known_unit(word);
+    return !unit.empty() && dimension(unit) == "length";
+  });
+}
+
 /// Reads the words of a name.
 ColumnProposal proposal_of(std::span<const std::string> words) {
   ColumnProposal proposal;
@@ -275,6 +287,7 @@ ColumnProposal proposal_of(std::span<const std::string> words) {
   };
   if (!rest.empty() && !understood(rest.front())) return {};
   if (proposal.quantity == "speed" && names_component(rest)) return {};
+  if (is_coordinate(proposal.quantity) && names_length(rest)) return {};
   read_dimension(rest, proposal);
   read_unit(rest.empty() ? words : rest, proposal);
   read_sense(words, proposal);
@@ -284,10 +297,28 @@ ColumnProposal proposal_of(std::span<const std::string> words) {
   return proposal;
 }
 
-/// Tells whether a byte is part of a word: those beyond ASCII are parts of a letter in UTF-8 ("Länge").
-bool is_letter_or_digit(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return byte >= 0x80 || std::isalnum(byte) != 0;
+/// Tells whether a byte is part of a word in UTF-8: those of "ä" to "ÿ" begin with 0xC3, "°" and "µ" with 0xC2.
+/// Other signs beyond ASCII (dashes, hard blanks) separate words.
+bool is_letter_or_digit(std::string_view name, std::size_t at) {
+  constexpr unsigned char kLetters = 0xC3;
+  constexpr unsigned char kSigns = 0xC2;
+  const auto byte = [&](std::size_t i) {
+    return i < name.size() ? static_cast<unsigned char>(name[i]) : static_cast<unsigned char>(0);
+  };
+  const auto is_sign = [](unsigned char second) { return second == 0xB0 || second == 0xB5; };
+  if (byte(at) < 0x80) return std::isalnum(byte(at)) != 0;
+  if (byte(at) == kLetters) return true;
+  if (byte(at) == kSigns) return is_sign(byte(at + 1));
+  const unsigned char lead = at > 0 ? byte(at - 1) : static_cast<unsigned char>(0);
+  return lead == kLetters || (lead == kSigns && is_sign(byte(at)));
+}
+
+/// Returns a byte in small letters; of "Ä" to "Ý" the second one.
+char small_letter(std::string_view name, std::size_t at) {
+  const auto byte = static_cast<unsigned char>(name[at]);
+  const bool is_second = at > 0 && static_cast<unsigned char>(name[at - 1]) == 0xC3;
+  if (is_second && byte >= 0x80 && byte <= 0x9E) return static_cast<char>(byte + 0x20);
+  return byte < 0x80 ? static_cast<char>(std::tolower(byte)) : name[at];
 }
 
 }  // namespace
@@ -311,7 +342,7 @@ std::vector<std::string> words_of(std::string_view name) {
       in_unit = false;
     } else if (in_unit) {
       word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    } else if (!is_letter_or_digit(c)) {
+    } else if (!is_letter_or_digit(name, i)) {
       end_word();
     } else {
       const bool capital = std::isupper(static_cast<unsigned char>(c)) != 0;
@@ -321,7 +352,7 @@ std::vector<std::string> words_of(std::string_view name) {
                                 std::islower(static_cast<unsigned char>(name[i + 1])) != 0;
       const bool sign = static_cast<unsigned char>(c) == 0xC2;  // the first byte of a degree sign
       if ((capital && (after_small || before_small)) || sign) end_word();
-      word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      word += small_letter(name, i);
     }
   }
   end_word();
@@ -345,8 +376,12 @@ ColumnProposal propose_quantity(std::string_view name) {
   if (words.size() > 1 && words.front() == "field") words = words.subspan(1);
   ColumnProposal proposal = proposal_of(words);
   // PlotJuggler writes topics before the members: "/odom/twist/twist/linear/x".
-  while (name.starts_with('/') && proposal.quantity.empty() && words.size() > 1)
+  // Of a member of one letter the topic tells what it is: "/odom/pose/pose/orientation/w".
+  while (name.starts_with('/') && proposal.quantity.empty() && words.size() > 1 &&
+         (words.size() > 2 || words.back().size() > 1)) {
     proposal = proposal_of(words = words.subspan(1));
+    if (!proposal.quantity.empty() && proposal.remark.empty()) proposal.remark = "its topic is not looked at";
+  }
   if (name == "%time") proposal.remark = "it is when the message was recorded";
   return proposal;
 }

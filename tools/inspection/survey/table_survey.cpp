@@ -89,7 +89,7 @@ void check_range(ColumnSummary& column, double step) {
         fmt::format("no unit is named; values up to {:.4g} are too large for a vehicle in rad/s", largest);
   }
   if ((proposal.quantity == "heading" || proposal.quantity == "course") && column.range.smallest < -1.5 &&
-      largest < 3.15) {
+      column.range.largest - column.range.smallest > 4.5 && largest < 3.15) {
     proposal.unit = "rad";
     proposal.remark = "no unit is named; the numbers look like radians";
   }
@@ -153,6 +153,9 @@ void settle_radians(std::vector<ColumnSummary>& columns) {
   const auto latitude = proposed("latitude", 1);
   const auto longitude = proposed("longitude", 2);
   if (latitude == columns.end() || longitude == columns.end()) return;
+  // Simulators have their origin at 0, 0.
+  constexpr double kSomewhere = 0.1;
+  if (std::max(std::abs(latitude->range.largest), std::abs(longitude->range.largest)) < kSomewhere) return;
   for (const auto& column : {latitude, longitude}) {
     column->proposal.unit = "rad";
     column->proposal.remark = "no unit is named; the numbers look like radians";
@@ -202,6 +205,12 @@ void remark_on_metres(std::vector<ColumnSummary>& columns) {
       east->name, north->name);
 }
 
+void keep_as_fractions(ColumnSummary& fractions, ColumnSummary& seconds) {
+  fractions.proposal = {};
+  seconds.proposal.remark =
+      fmt::format("whole seconds; their fractions are in '{}', which is not read", fractions.name);
+}
+
 /// Seconds whose fractions are in a column of their own ("header.stamp.secs", "header.stamp.nsecs") are whole ones.
 void remark_on_whole_seconds(std::vector<ColumnSummary>& columns) {
   const auto words_before_last = [](const ColumnSummary& column,
@@ -214,10 +223,9 @@ void remark_on_whole_seconds(std::vector<ColumnSummary>& columns) {
   for (ColumnSummary& seconds : columns) {
     const std::vector<std::string> name = words_before_last(seconds, {"sec", "secs"});
     if (name.empty() || seconds.proposal.quantity != "time") continue;
-    for (const ColumnSummary& fractions : columns)
+    for (ColumnSummary& fractions : columns)
       if (words_before_last(fractions, {"nsec", "nsecs", "nanosec"}) == name)
-        seconds.proposal.remark =
-            fmt::format("whole seconds; their fractions are in '{}', which is not read", fractions.name);
+        keep_as_fractions(fractions, seconds);
   }
 }
 
@@ -287,18 +295,27 @@ void TableSurvey::take_line(std::string_view line, std::size_t number) {
   for (std::size_t i = 0; i < columns_.size(); ++i) take_field(columns_[i], fields_[i]);
 }
 
+/// Tells whether a line holds values: the first field does, and more than half of those that are not empty. A few words
+/// may stand beside them: a status, a frame.
+bool TableSurvey::holds_values() const {
+  const auto is_value = [this](std::string_view field) {
+    const std::optional<double> number = formats::number_from_field(field, summary_.separator);
+    return (number && !std::isnan(*number)) || holds_instants(forms_of(field, kAllForms));
+  };
+  const auto filled = std::count_if(fields_.begin(), fields_.end(), [this](std::string_view field) {
+    const std::optional<double> number = formats::number_from_field(field, summary_.separator);
+    return !number || !std::isnan(*number);
+  });
+  return is_value(fields_.front()) && 2 * std::count_if(fields_.begin(), fields_.end(), is_value) > filled;
+}
+
 void TableSurvey::begin(std::string_view line) {
   begun_ = true;
   summary_.separator = formats::separator_of(line);
   if (!formats::split_fields(line, summary_.separator, fields_)) return;
   width_ = fields_.size();
   columns_.resize(std::min(width_, kMostColumns));
-  const auto values = std::count_if(fields_.begin(), fields_.end(), [this](std::string_view field) {
-    return formats::number_from_field(field, summary_.separator).has_value() ||
-           holds_instants(forms_of(field, kAllForms));
-  });
-  const bool numbers =
-      2 * values > std::ssize(fields_);  // a few words may stand beside them: a status, a frame
+  const bool numbers = holds_values();
   std::vector<std::string_view> names = fields_;
   if (numbers) {
     std::vector<std::string_view> above;

@@ -59,6 +59,7 @@ class TableSurvey final : public formats::LineDecoder {
   };
   void take_line(std::string_view line, std::size_t number) override;
   void begin(std::string_view line);
+  [[nodiscard]] bool holds_values() const;
   void take_field(Column& column, std::string_view field);
   [[nodiscard]] ColumnSummary summary_of(const Column& column) const;
 

@@ -70,6 +70,7 @@ double bias_walk_of(const std::deque<OdometrySample>& odometry) {
   constexpr double kLargestStep_radps = 0.015;  // more is a turn on the spot
   constexpr int kRounds = 20;
   const double white = white_noise_of(odometry);
+  if (white == 0) return kUsual;  // what stops tell of the bias is not known
   const std::vector<BiasAtStop> stops = biases_at_stops(odometry);
   double variance = kAtFirst * kAtFirst;
   for (int round = 0; round < kRounds; ++round) {

@@ -151,8 +151,9 @@ DriveVerdict verdict_of(const ReportedDrive& drive) {
     return verdict;
   }
   verdict.kind = better >= 0 ? drawing::Verdict::better : drawing::Verdict::worse;
+  constexpr double kSameLog_m = 1e-3;  // fixes that are the truth
   const std::string how =
-      std::isnan(better)  // fixes that are the truth
+      truth.gnss.position.rmse_m < kSameLog_m
           ? "not comparable with"
           : fmt::format("{:.0f} % {} than", std::abs(better), better >= 0 ? "better" : "worse");
   verdict.text += fmt::format(

@@ -50,7 +50,8 @@ bool holds_values(const std::vector<std::string_view>& fields, const LogRequest&
   const std::size_t number = column_number(time->second.column).value_or(0);
   if (number < 1 || number > fields.size()) return false;
   const std::string_view field = fields[number - 1];
-  return is_number(field) || stamp_from_decimal_seconds(field) || stamp_from_iso8601(field);
+  const std::optional<double> value = number_from_field(field, request.separator);
+  return (value && !std::isnan(*value)) || stamp_from_decimal_seconds(field) || stamp_from_iso8601(field);
 }
 
 /// Returns what is wrong with the scale or the number for "no value" of a request. Empty: nothing.
