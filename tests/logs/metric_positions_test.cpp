@@ -7,8 +7,8 @@
 #include <string>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/formats/logs/detail/csv/csv_log.hpp>
 
+#include "logs/csv/csv_text.hpp"
 #include "logs/log_pieces.hpp"
 
 namespace metric_positions_test {
@@ -16,12 +16,9 @@ namespace metric_positions_test {
 using namespace waymark;
 using namespace waymark::formats;
 using Catch::Matchers::Message;
+using waymark_test::read_csv;
 
 namespace {
-
-LogData read(std::string_view text, const LogRequest& request) {
-  return CsvLogReader().read(text, "log.csv", request);
-}
 
 /// Zone 38 with an origin near Baghdad.
 LogRequest gnss(double default_sigma_m = 3) {
@@ -35,7 +32,7 @@ LogRequest gnss(double default_sigma_m = 3) {
 
 TEST_CASE("metric positions: easting and northing in the frame are a place on the ellipsoid") {
   // 33.3 N 44.4 E = 38SMB 44140 84706 (the example of GeographicLib's MGRS documentation).
-  const LogData data = read("time,easting,northing\n1,140.5,706.5\n", gnss());
+  const LogData data = read_csv("time,easting,northing\n1,140.5,706.5\n", gnss());
   REQUIRE(data.fixes.size() == 1);
   CHECK(data.fixes[0].latitude_deg == Approx(33.3).margin(1e-5));
   CHECK(data.fixes[0].longitude_deg == Approx(44.4).margin(1e-5));
@@ -47,7 +44,7 @@ TEST_CASE("metric positions: columns, units and hemisphere are as stated, for tr
   request.stream = StreamKind::truth;
   request.metric_frame = Frame{32, false};  // plain UTM coordinates of the south
   request.columns = {{"easting", {"x", "cm", ""}}, {"northing", {"y", "mm", ""}}};
-  const LogData data = read("time,y,x,latitude,heading\n1,10000000000,50000000,7,0.5\n", request);
+  const LogData data = read_csv("time,y,x,latitude,heading\n1,10000000000,50000000,7,0.5\n", request);
   REQUIRE(data.truth.size() == 1);
   CHECK(data.truth[0].latitude_deg == Approx(0).margin(1e-12));  // the equator on the central meridian
   CHECK(data.truth[0].longitude_deg == Approx(9));
@@ -61,7 +58,8 @@ TEST_CASE("metric positions: accuracies are those of the grid's axes, the covari
   LogRequest request = gnss(0);
   request.metric_frame->origin_easting_m = 0;
   request.metric_frame->origin_northing_m = 0;
-  const LogData data = read("time,easting,northing,sigma_east,sigma_north\n1,750000,3684706,1,3\n", request);
+  const LogData data =
+      read_csv("time,easting,northing,sigma_east,sigma_north\n1,750000,3684706,1,3\n", request);
   const GeodeticFix& fix = data.fixes.at(0);
   const double degree = std::numbers::pi / 180;
   const double g =
@@ -76,12 +74,13 @@ TEST_CASE("metric positions: accuracies are those of the grid's axes, the covari
 }
 
 TEST_CASE("metric positions: a stated sigma is one of metres on the ground") {
-  const LogData data = read("time,easting,northing\n1,0,0\n", gnss(3));
+  const LogData data = read_csv("time,easting,northing\n1,0,0\n", gnss(3));
   CHECK(data.fixes.at(0).covariance_en == Eigen::Matrix2d(9 * Eigen::Matrix2d::Identity()));
 }
 
 TEST_CASE("metric positions: a row without a position is a row without a fix") {
-  const LogData data = read("time,easting,northing\n1,,\n2,nan,NaN\n3,5,6\n4,5,\n5,x,6\n6,9e6,0\n", gnss());
+  const LogData data =
+      read_csv("time,easting,northing\n1,,\n2,nan,NaN\n3,5,6\n4,5,\n5,x,6\n6,9e6,0\n", gnss());
   CHECK(data.fixes.size() == 1);
   CHECK(data.without_fix == 2);
   CHECK(data.corrupt_examples ==
@@ -90,31 +89,32 @@ TEST_CASE("metric positions: a row without a position is a row without a fix") {
             "log.csv:7:3: easting: UTM easting 9444000, northing 3684000 are outside zone 38"});
   CHECK(data.notes.back() == "log.csv: 2 of 6 records are marked as without a fix");
   // The same rule holds for degrees.
-  CHECK(read("time,latitude,longitude\n1,,\n2,50,8\n", gnss()).without_fix == 1);
-  CHECK(read("time,latitude,longitude\n1,50,\n2,50,8\n", gnss()).corrupt == 1);
+  CHECK(read_csv("time,latitude,longitude\n1,,\n2,50,8\n", gnss()).without_fix == 1);
+  CHECK(read_csv("time,latitude,longitude\n1,50,\n2,50,8\n", gnss()).corrupt == 1);
 }
 
 TEST_CASE("metric positions: without a frame they are no place, and the error says what is needed") {
   LogRequest request = gnss();
   request.metric_frame.reset();
   CHECK_THROWS_MATCHES(
-      read("time,easting,northing\n1,5,6\n", request), InputError,
+      read_csv("time,easting,northing\n1,5,6\n", request), InputError,
       Message("log.csv:1:1: easting and northing are coordinates of a stated frame: the log needs "
               "'frame: {utm_zone: 32N}' or 'frame: {enu_origin: [LATITUDE, LONGITUDE]}'"));
   // A table that has degrees, too, needs no frame.
-  CHECK(read("time,easting,northing,latitude,longitude\n1,5,6,50,8\n", request).fixes.at(0).latitude_deg ==
-        50);
+  CHECK(
+      read_csv("time,easting,northing,latitude,longitude\n1,5,6,50,8\n", request).fixes.at(0).latitude_deg ==
+      50);
 }
 
 TEST_CASE("metric positions: columns name one kind of position") {
   LogRequest request = gnss();
   request.columns = {{"easting", {"x", "", ""}}, {"latitude", {"y", "", ""}}};
-  CHECK_THROWS_MATCHES(read("time,x,y\n1,5,6\n", request), InputError,
+  CHECK_THROWS_MATCHES(read_csv("time,x,y\n1,5,6\n", request), InputError,
                        Message("log.csv:1:1: columns name two kinds of position: keep latitude and "
                                "longitude, or easting and northing"));
   request.columns.erase("latitude");
   CHECK_THROWS_MATCHES(
-      read("time,x,y\n1,5,6\n", request), InputError,
+      read_csv("time,x,y\n1,5,6\n", request), InputError,
       Message("log.csv:1:1: no column for northing (neither 'northing' nor 'northing_m'): name it "
               "under columns; columns present: time, x, y"));
 }

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/formats/logs/detail/csv/csv_log.hpp>
 
+#include "logs/csv/csv_text.hpp"
 #include "logs/log_pieces.hpp"
 
 namespace csv_dialects_test {
@@ -18,6 +18,7 @@ namespace csv_dialects_test {
 using namespace waymark;
 using namespace waymark::formats;
 using Catch::Matchers::Message;
+using waymark_test::read_csv;
 
 namespace {
 
@@ -37,21 +38,19 @@ LogRequest odometry() {
   return request;
 }
 
-LogData read(std::string_view text, const LogRequest& request) {
-  return CsvLogReader().read(text, "log.csv", request);
-}
-
 /// The stamp of a row with this text in the column `t`, in nanoseconds.
 std::int64_t stamp_of(const std::string& field, const std::string& unit, TimeScale scale = TimeScale::utc) {
   LogRequest request = truth(scale);
   request.columns["time"] = {"t", unit, ""};
-  return read(fmt::format("t;latitude;longitude\n{};48;11\n", field), request).truth.at(0).stamp.nanoseconds;
+  return read_csv(fmt::format("t;latitude;longitude\n{};48;11\n", field), request)
+      .truth.at(0)
+      .stamp.nanoseconds;
 }
 
 double latitude_of(const std::string& field, const std::string& unit) {
   LogRequest request = truth();
   request.columns["latitude"] = {"lat", unit, ""};
-  const LogData data = read(fmt::format("time;lat;longitude\n1;{};11\n", field), request);
+  const LogData data = read_csv(fmt::format("time;lat;longitude\n1;{};11\n", field), request);
   REQUIRE(data.truth.size() == 1);
   return data.truth[0].latitude_deg;
 }
@@ -86,7 +85,7 @@ TEST_CASE("csv dialects: days of a spreadsheet are right to 13 decimals, 9 ns") 
 TEST_CASE("csv dialects: a date that is none is a corrupt row, in its own words") {
   LogRequest request = truth();
   request.columns["time"] = {"t", "dmy", ""};
-  const LogData data = read(
+  const LogData data = read_csv(
       "t,latitude,longitude\n31.1.2024 12:00,48,11\n31.2.2024 12:00,48,11\n12.31.2024 1:00,48,11\n"
       "31.1.2024 25:00,48,11\n31.1.2024,48,11\n",
       request);
@@ -107,7 +106,7 @@ TEST_CASE("csv dialects: instants that 64 bits of nanoseconds do not hold are co
     request.columns["time"] = {"t", unit, ""};
     std::string text = "t,latitude,longitude\n";
     for (const std::string& field : fields) text += field + ",48,11\n";
-    const LogData data = read(text, request);
+    const LogData data = read_csv(text, request);
     CHECK(data.corrupt == 2);
     REQUIRE(data.truth.size() == 1);
     CHECK(data.truth[0].stamp.nanoseconds == kNoon);
@@ -118,21 +117,23 @@ TEST_CASE("csv dialects: date and time of day stand in two columns") {
   LogRequest request = truth();
   request.columns["date"] = {"day", "dmy", ""};
   request.columns["time"] = {"clock", "hms", ""};
-  CHECK(read("day,clock,latitude,longitude\n31.1.2024,12:00:00,48,11\n", request)
+  CHECK(read_csv("day,clock,latitude,longitude\n31.1.2024,12:00:00,48,11\n", request)
             .truth.at(0)
             .stamp.nanoseconds == kNoon);
-  CHECK(
-      read("day,clock,latitude,longitude\n310124,120000.00,48,11\n", request).truth.at(0).stamp.nanoseconds ==
-      kNoon);
+  CHECK(read_csv("day,clock,latitude,longitude\n310124,120000.00,48,11\n", request)
+            .truth.at(0)
+            .stamp.nanoseconds == kNoon);
   request.columns["time"] = {"clock", "s", ""};
-  CHECK(
-      read("day,clock,latitude,longitude\n31.1.2024,43200,48,11\n", request).truth.at(0).stamp.nanoseconds ==
-      kNoon);
+  CHECK(read_csv("day,clock,latitude,longitude\n31.1.2024,43200,48,11\n", request)
+            .truth.at(0)
+            .stamp.nanoseconds == kNoon);
   request.columns["date"] = {"day", "gps_week", ""};
   // 1390737618 s are 2299 weeks and 302418 s
-  CHECK(read("day,clock,latitude,longitude\n2299,302418,48,11\n", request).truth.at(0).stamp.nanoseconds ==
-        kNoon);
-  const LogData wrong = read("day,clock,latitude,longitude\n2299,302418,48,11\n2299,700000,48,11\n", request);
+  CHECK(
+      read_csv("day,clock,latitude,longitude\n2299,302418,48,11\n", request).truth.at(0).stamp.nanoseconds ==
+      kNoon);
+  const LogData wrong =
+      read_csv("day,clock,latitude,longitude\n2299,302418,48,11\n2299,700000,48,11\n", request);
   CHECK(wrong.corrupt_examples.at(0) ==
         "log.csv:3:6: time: '700000' is no time of the day or week that the date begins");
 }
@@ -141,12 +142,12 @@ TEST_CASE("csv dialects: a time of day alone goes on over midnight, from the dat
   LogRequest request = truth();
   request.columns["time"] = {"t", "hms", ""};
   CHECK_THROWS_MATCHES(
-      read("t,latitude,longitude\n23:59:59,48,11\n", request), InputError,
+      read_csv("t,latitude,longitude\n23:59:59,48,11\n", request), InputError,
       Message("log.csv: time is a time of day: name the column of the date under columns, or "
               "state that of the first row, 'time: {date: 2024-01-31}'"));
   request.date = Stamp{kNoon - 43'200'000'000'000};
   const LogData data =
-      read("t,latitude,longitude\n23:59:59,48,11\n00:00:01,48,11\n00:00:02,48,11\n", request);
+      read_csv("t,latitude,longitude\n23:59:59,48,11\n00:00:01,48,11\n00:00:02,48,11\n", request);
   REQUIRE(data.truth.size() == 3);
   CHECK(data.truth[0].stamp.nanoseconds == kNoon + 43'199'000'000'000);
   CHECK(data.truth[1].stamp.nanoseconds == kNoon + 43'201'000'000'000);
@@ -168,7 +169,7 @@ TEST_CASE("csv dialects: minutes of 60 and a sign beside a letter are no angle")
   LogRequest request = truth();
   request.columns["latitude"] = {"lat", "ddmm", ""};
   const LogData data =
-      read("time,lat,longitude\n1,4807.038,11\n2,4860.0,11\n3,-4807.0S,11\n4,4807.0X,11\n", request);
+      read_csv("time,lat,longitude\n1,4807.038,11\n2,4860.0,11\n3,-4807.0S,11\n4,4807.0X,11\n", request);
   CHECK(data.truth.size() == 1);
   CHECK(data.corrupt == 3);
 }
@@ -179,7 +180,7 @@ TEST_CASE("csv dialects: the hemisphere has a column of its own") {
                      {"longitude", {"lon", "ddmm", ""}},
                      {"latitude_hemisphere", {"ns", "", ""}},
                      {"longitude_hemisphere", {"ew", "", ""}}};
-  const LogData data = read(
+  const LogData data = read_csv(
       "time,lat,ns,lon,ew\n1,4807.038,N,01131.000,W\n2,4807.038,S,01131.000,E\n3,4807,Q,1131,E\n", request);
   REQUIRE(data.truth.size() == 2);
   CHECK(data.truth[0].longitude_deg == Approx(-(11 + 31.0 / 60)));
@@ -188,12 +189,12 @@ TEST_CASE("csv dialects: the hemisphere has a column of its own") {
 }
 
 TEST_CASE("csv dialects: units in brackets and in a row of their own are obeyed") {
-  const LogData brackets = read("Time (ms);Speed [km/h];Yaw_rate (°/s)\n1500;36;90\n", odometry());
+  const LogData brackets = read_csv("Time (ms);Speed [km/h];Yaw_rate (°/s)\n1500;36;90\n", odometry());
   REQUIRE(brackets.odometry.size() == 1);
   CHECK(brackets.odometry[0].stamp.nanoseconds == 1'500'000'000);
   CHECK(brackets.odometry[0].speed_mps == Approx(10));
   CHECK(brackets.odometry[0].yaw_rate_radps == Approx(std::numbers::pi / 2));
-  const LogData row = read("time,speed,yaw_rate\nms,kph,deg/s\n1500,36,90\n", odometry());
+  const LogData row = read_csv("time,speed,yaw_rate\nms,kph,deg/s\n1500,36,90\n", odometry());
   REQUIRE(row.odometry.size() == 1);
   CHECK(row.records == 1);
   CHECK(row.odometry[0].speed_mps == Approx(10));
@@ -203,11 +204,11 @@ TEST_CASE("csv dialects: units in brackets and in a row of their own are obeyed"
 TEST_CASE("csv dialects: a stated unit wins over the header's, and a strange one is asked for") {
   LogRequest request = odometry();
   request.columns["speed"] = {"speed", "m/s", ""};
-  const LogData data = read("time,speed,yaw_rate\ns,km/h,rad/s\n1,10,0\n", request);
+  const LogData data = read_csv("time,speed,yaw_rate\ns,km/h,rad/s\n1,10,0\n", request);
   CHECK(data.odometry.at(0).speed_mps == 10);
   CHECK(data.notes.at(1) == "log.csv:1:1: speed is read in m/s, though the header has km/h");
   CHECK_THROWS_MATCHES(
-      read("time,speed,yaw_rate\ns,furlong/h,rad/s\n1,10,0\n", odometry()), InputError,
+      read_csv("time,speed,yaw_rate\ns,furlong/h,rad/s\n1,10,0\n", odometry()), InputError,
       Message("log.csv:1:1: the row of units has 'furlong/h' for speed; state its unit under "
               "columns: m/s, km/h, mph, kn, mm/s"));
 }
@@ -220,7 +221,7 @@ TEST_CASE("csv dialects: names of rostopic, its variances and its status") {
                      {"sigma_north", {"field.position_covariance4", "m^2", ""}},
                      {"covariance_en_signed_root", {"field.position_covariance1", "m^2", ""}},
                      {"quality", {"field.status.status", "ros", ""}}};
-  const LogData data = read(
+  const LogData data = read_csv(
       "%time,field.status.status,field.latitude,field.longitude,field.position_covariance0,"
       "field.position_covariance1,field.position_covariance4\n"
       "1706702400000000000,2,48,11,4,-1,9\n",
@@ -234,7 +235,8 @@ TEST_CASE("csv dialects: names of rostopic, its variances and its status") {
 }
 
 TEST_CASE("csv dialects: names that differ only in letters or units are told apart by the user") {
-  CHECK_THROWS_MATCHES(read("time,Speed (m/s),SPEED [km/h],yaw_rate\n1,1,3.6,0\n", odometry()), InputError,
+  CHECK_THROWS_MATCHES(read_csv("time,Speed (m/s),SPEED [km/h],yaw_rate\n1,1,3.6,0\n", odometry()),
+                       InputError,
                        Message("log.csv:1:1: 'Speed (m/s)' and 'SPEED [km/h]' may both be speed; name the "
                                "column under columns"));
 }
@@ -242,7 +244,7 @@ TEST_CASE("csv dialects: names that differ only in letters or units are told apa
 TEST_CASE("csv dialects: metres on the plane of an origin are places, with its axes") {
   LogRequest request;
   request.local_origin = LocalOrigin{60, 11, 500};
-  const LogData data = read(
+  const LogData data = read_csv(
       "time,easting,northing,sigma_east,sigma_north\n1,100,0,1,3\n2,0,100,1,3\n3,50000,0,1,3\n", request);
   REQUIRE(data.fixes.size() == 3);
   // Radii of curvature of WGS84 at 60 degrees, at a height of 500 m.

@@ -6,25 +6,17 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/formats/logs/channels.hpp>
-#include <waymark/formats/logs/detail/csv/csv_log.hpp>
+
+#include "logs/csv/csv_text.hpp"
 
 namespace csv_unknown_test {
 
 using namespace waymark;
 using namespace waymark::formats;
+using waymark_test::csv_request;
+using waymark_test::read_csv;
 
 namespace {
-
-LogRequest request(StreamKind stream) {
-  LogRequest request;
-  request.stream = stream;
-  request.default_sigma_m = 1;
-  return request;
-}
-
-LogData read(const std::string& text, const LogRequest& request) {
-  return CsvLogReader().read(text, "log.csv", request);
-}
 
 /// Returns a table of speeds with yaw rates of 0, one a second.
 std::string speeds(std::initializer_list<const char*> numbers) {
@@ -43,7 +35,7 @@ std::size_t notes_of_marks(const LogData& data) {
 }  // namespace
 
 TEST_CASE("csv: speeds of -1 are not known where no other one is negative, in each kind of stream") {
-  const LogData whole = read(speeds({"-1", "0.4", "-1.0", "-1"}), request(StreamKind::odometry));
+  const LogData whole = read_csv(speeds({"-1", "0.4", "-1.0", "-1"}), csv_request(StreamKind::odometry));
   REQUIRE(whole.odometry.size() == 1);
   CHECK(whole.odometry[0].speed_mps == 0.4);
   CHECK(whole.corrupt == 0);
@@ -52,18 +44,18 @@ TEST_CASE("csv: speeds of -1 are not known where no other one is negative, in ea
       "log.csv: 3 values of speed are -1 m/s, and no other one is negative: they are taken as not known (as "
       "'missing: -1' of the column says; 'missing' with another number keeps them)");
 
-  LogRequest parts = request(StreamKind::odometry);
+  LogRequest parts = csv_request(StreamKind::odometry);
   parts.readings = odometry_channels();
   parts.columns["speed"] = {"speed", "km/h", ""};
-  const LogData readings = read(speeds({"-1", "3.6", "-1", "-1"}), parts);
+  const LogData readings = read_csv(speeds({"-1", "3.6", "-1", "-1"}), parts);
   REQUIRE(readings.readings.size() == 4);
   CHECK(std::isnan(readings.readings.at(0, 0)));
   CHECK(readings.readings.at(1, 0) == Approx(1));
   CHECK(readings.readings.at(3, 1) == 0);  // the yaw rate of the row stays
 
-  const LogData fixes = read(
+  const LogData fixes = read_csv(
       "time,latitude,longitude,speed,course\n0,50,15,-1,-1\n1,50,15,0.5,359.5\n2,50,15,-1,-1\n3,50,15,-1,-1\n",
-      request(StreamKind::gnss));
+      csv_request(StreamKind::gnss));
   REQUIRE(fixes.fixes.size() == 4);
   CHECK_FALSE(fixes.fixes[0].speed_mps);
   CHECK_FALSE(fixes.fixes[0].course_rad);
@@ -75,12 +67,12 @@ TEST_CASE("csv: speeds of -1 are not known where no other one is negative, in ea
 TEST_CASE(
     "csv: speeds of -1 are reversing beside other negative ones, if they are few, and in whole numbers") {
   const auto kept = [](const std::string& text, const LogRequest& how) {
-    const LogData data = read(text, how);
+    const LogData data = read_csv(text, how);
     CHECK(notes_of_marks(data) == 0);
     return std::count_if(data.odometry.begin(), data.odometry.end(),
                          [](const OdometrySample& sample) { return sample.speed_mps == -1; });
   };
-  const LogRequest plain = request(StreamKind::odometry);
+  const LogRequest plain = csv_request(StreamKind::odometry);
   CHECK(kept(speeds({"-1", "0.5", "-1", "-1", "-0.5"}), plain) == 3);
   CHECK(kept(speeds({"-1", "0.5", "-1", "0.7"}), plain) == 2);
   // A bus of whole m/s reaches -1 first when it reverses.

@@ -22,19 +22,23 @@ double mean_heading(const ReckonedFixes& receiver, std::size_t first, std::size_
   return sum / seconds_between(receiver.fixes[first].stamp, receiver.fixes[last].stamp);
 }
 
-/// Returns the mean difference of the turns with a factor. A single wrong fix counts at most 1 rad.
-double difference_with(double factor, std::span<const TurnPair> turns) {
+/// Returns the mean of what a function leaves of the turns. A single wrong fix counts at most 1 rad.
+template <typename LeftOf>
+double mean_left(std::span<const TurnPair> turns, LeftOf left_of) {
   double sum = 0;
-  for (const TurnPair& pair : turns)
-    sum += std::min(1.0, std::abs(wrap_angle(pair.gnss_rad - factor * pair.odometry_rad)));
+  for (const TurnPair& pair : turns) sum += std::min(1.0, std::abs(left_of(pair)));
   return sum / static_cast<double>(turns.size());
+}
+
+/// Returns the mean difference of the turns with a factor.
+double difference_with(double factor, std::span<const TurnPair> turns) {
+  return mean_left(
+      turns, [&](const TurnPair& pair) { return wrap_angle(pair.gnss_rad - factor * pair.odometry_rad); });
 }
 
 /// Returns the same of the chords themselves, which have a factor of 1.
 double difference_of_chords(std::span<const TurnPair> turns) {
-  double sum = 0;
-  for (const TurnPair& pair : turns) sum += std::min(1.0, std::abs(pair.apart_rad));
-  return sum / static_cast<double>(turns.size());
+  return mean_left(turns, [](const TurnPair& pair) { return pair.apart_rad; });
 }
 
 /// By how much the odometry turns more from one chord to the next, and the time and the way of that.

@@ -16,6 +16,13 @@ namespace {
 
 using Complex = std::complex<double>;
 
+/// Longer intervals between samples are silences.
+double silence_of(std::span<const OdometrySample> odometry) {
+  constexpr double kSilence_s = 2;
+  return longest_silence_s(series_of({odometry.begin(), odometry.end()}, &OdometrySample::speed_mps),
+                           kSilence_s);
+}
+
 double median_yaw_rate_at_rest(std::span<const OdometrySample> odometry) {
   constexpr double kRests = 0.05;  // m/s
   if (!yaw_rate_at_rest(odometry).is_known()) return 0;
@@ -25,7 +32,7 @@ double median_yaw_rate_at_rest(std::span<const OdometrySample> odometry) {
   return upper_median(std::move(readings));
 }
 
-Complex place_of(const Fix& fix) {
+Complex complex_of(const Fix& fix) {
   return {fix.position.x(), fix.position.y()};
 }
 
@@ -40,14 +47,14 @@ Moments moments_of(std::span<const Fix> fixes, std::span<const Complex> places) 
   Complex middle_of_fixes;
   Complex middle_of_odometry;
   for (std::size_t i = 0; i < fixes.size(); ++i) {
-    middle_of_fixes += place_of(fixes[i]);
+    middle_of_fixes += complex_of(fixes[i]);
     middle_of_odometry += places[i];
   }
   middle_of_fixes /= static_cast<double>(fixes.size());
   middle_of_odometry /= static_cast<double>(fixes.size());
   Moments sums;
   for (std::size_t i = 0; i < fixes.size(); ++i) {
-    const Complex fix = place_of(fixes[i]) - middle_of_fixes;
+    const Complex fix = complex_of(fixes[i]) - middle_of_fixes;
     const Complex reckoned = places[i] - middle_of_odometry;
     sums.product += fix * std::conj(reckoned);
     sums.fixes += std::norm(fix);
@@ -59,7 +66,7 @@ Moments moments_of(std::span<const Fix> fixes, std::span<const Complex> places) 
 }  // namespace
 
 LaidOdometry::LaidOdometry(std::span<const OdometrySample> odometry, std::span<const Fix> fixes)
-    : odometry_(odometry), fixes_(fixes_for_motion(fixes)) {
+    : odometry_(odometry), fixes_(fixes_for_motion(fixes)), silence_s_(silence_of(odometry)) {
   drift_.radps = median_yaw_rate_at_rest(odometry);
   reckon();
 }
@@ -80,6 +87,10 @@ bool LaidOdometry::stays(Stamp from, Stamp to) const {
   if (after == fixes_.end() || later == fixes_.begin()) return false;
   const Fix& before = *std::prev(later);
   return (after->position - before.position).norm() <= after->accuracy_m() + before.accuracy_m();
+}
+
+bool LaidOdometry::is_silent_before(std::size_t sample) const {
+  return seconds_between(odometry_[sample - 1].stamp, odometry_[sample].stamp) > silence_s_;
 }
 
 double LaidOdometry::length_m(std::size_t first, std::size_t last) const {
@@ -115,9 +126,6 @@ LaidTime LaidOdometry::alignment(Stamp from, Stamp to) const {
 /// whether the vehicle reverses.
 std::vector<LaidOdometry::Drifted> LaidOdometry::drifted() const {
   constexpr double kShort_s = 10;
-  constexpr double kSilence_s = 2;
-  const double silence_s = longest_silence_s(
-      series_of({odometry_.begin(), odometry_.end()}, &OdometrySample::speed_mps), kSilence_s);
   std::vector<Drifted> result;
   LaidTime before;
   std::size_t first_before = 0;
@@ -127,8 +135,7 @@ std::vector<LaidOdometry::Drifted> LaidOdometry::drifted() const {
     while (last + 1 < odometry_.size() &&
            seconds_between(odometry_[first].stamp, odometry_[last].stamp) < kShort_s) {
       ++last;
-      moves = moves && odometry_[last].speed_mps >= kMoves_mps &&
-              seconds_between(odometry_[last - 1].stamp, odometry_[last].stamp) <= silence_s;
+      moves = moves && odometry_[last].speed_mps >= kMoves_mps && !is_silent_before(last);
     }
     if (last == first) break;
     const LaidTime here = moves ? alignment(odometry_[first].stamp, odometry_[last].stamp) : LaidTime{};

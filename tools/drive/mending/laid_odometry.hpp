@@ -41,11 +41,15 @@ class LaidOdometry {
   /// Tells whether the fixes about a time are as near to each other as they claim.
   [[nodiscard]] bool stays(Stamp from, Stamp to) const;
 
+  /// Tells whether the odometry is silent for long before a sample: how it turned then is not known.
+  /// @pre sample > 0
+  [[nodiscard]] bool is_silent_before(std::size_t sample) const;
+
   /// Returns the way between two samples.
   [[nodiscard]] double length_m(std::size_t first, std::size_t last) const;
 
-  /// Lays the odometry of a time on its fixes. Times that are no longer than 5 m, or than the fixes are accurate,
-  /// have no alignment.
+  /// Lays the odometry of a time on its fixes. Ways that are shorter than about 5 m, or than twice the accuracy of
+  /// the fixes, have no alignment.
   [[nodiscard]] LaidTime alignment(Stamp from, Stamp to) const;
 
  private:
@@ -64,6 +68,7 @@ class LaidOdometry {
 
   std::span<const OdometrySample> odometry_;
   std::vector<Fix> fixes_;
+  double silence_s_;
   YawDrift drift_;
   std::vector<std::complex<double>> positions_;  // of the odometry at its samples, from the origin
 };

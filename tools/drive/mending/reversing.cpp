@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <waymark/tools/drive/logs/time_series.hpp>
 #include <waymark/tools/drive/mending/laid_odometry.hpp>
 #include <waymark/tools/drive/nodes/yaw_rate_at_rest.hpp>
 
@@ -31,17 +30,13 @@ struct Way {
 /// Returns for each sample how many silences of the odometry were before it in which the vehicle may have moved.
 /// How it turned then is not known, so the frames of the odometry before and after are two.
 std::vector<std::size_t> parts_of(std::span<const OdometrySample> odometry, const LaidOdometry& laid) {
-  constexpr double kSilence_s = 2;
-  const double silence_s = longest_silence_s(
-      series_of({odometry.begin(), odometry.end()}, &OdometrySample::speed_mps), kSilence_s);
   std::vector<std::size_t> parts(odometry.size(), 0);
   for (std::size_t i = 1; i < odometry.size(); ++i) {
     const OdometrySample& before = odometry[i - 1];
     const OdometrySample& after = odometry[i];
     const bool stands =
         std::max(before.speed_mps, after.speed_mps) < kMoves_mps && laid.stays(before.stamp, after.stamp);
-    const bool is_silent = seconds_between(before.stamp, after.stamp) > silence_s;
-    parts[i] = parts[i - 1] + (is_silent && !stands ? 1 : 0);
+    parts[i] = parts[i - 1] + (laid.is_silent_before(i) && !stands ? 1 : 0);
   }
   return parts;
 }

@@ -12,14 +12,6 @@ namespace {
 
 constexpr double kTurnWindow_s = 2;
 
-bool stands(const OdometrySample& sample) {
-  constexpr double kStands_mps = 0.05;
-  const Interval motion{.speed_mps = sample.speed_mps,
-                        .yaw_rate_radps = sample.yaw_rate_radps,
-                        .turns_on_spot = sample.turns_on_spot};
-  return motion.stands(kStands_mps) && !sample.assumed;
-}
-
 /// Returns what the yaw rate usually reads at rest; 0 if the vehicle hardly stands. A drive may turn for most of
 /// its only stop, but it goes straight more than it turns: readings near the median of the drive count.
 double usual_at_rest(std::span<const OdometrySample> odometry) {
@@ -29,7 +21,7 @@ double usual_at_rest(std::span<const OdometrySample> odometry) {
   std::vector<double> moving;
   std::vector<double> resting;
   for (const OdometrySample& sample : odometry) {
-    if (stands(sample)) resting.push_back(sample.yaw_rate_radps);
+    if (is_at_rest(sample)) resting.push_back(sample.yaw_rate_radps);
     if (std::abs(sample.speed_mps) > kMoves_mps) moving.push_back(sample.yaw_rate_radps);
   }
   if (resting.empty()) return 0;
@@ -61,12 +53,20 @@ void mark_turns(double usual, double clear, std::span<OdometrySample> stop) {
 
 }  // namespace
 
+bool is_at_rest(const OdometrySample& sample) {
+  constexpr double kStands_mps = 0.05;
+  const Interval motion{.speed_mps = sample.speed_mps,
+                        .yaw_rate_radps = sample.yaw_rate_radps,
+                        .turns_on_spot = sample.turns_on_spot};
+  return motion.stands(kStands_mps) && !sample.assumed;
+}
+
 YawRateAtRest yaw_rate_at_rest(std::span<const OdometrySample> odometry, bool stated_derived) {
   YawRateAtRest rest{.stated_derived = stated_derived};
   double squares = 0;
   std::size_t count = 0;
   for (std::size_t i = 1; i < odometry.size(); ++i) {
-    if (!stands(odometry[i - 1]) || !stands(odometry[i])) continue;
+    if (!is_at_rest(odometry[i - 1]) || !is_at_rest(odometry[i])) continue;
     rest.seconds += seconds_between(odometry[i - 1].stamp, odometry[i].stamp);
     squares += std::pow(odometry[i].yaw_rate_radps - odometry[i - 1].yaw_rate_radps, 2);
     ++count;
@@ -84,8 +84,8 @@ void mark_turns_on_spot(std::span<OdometrySample> odometry) {
   const double clear = std::max(kClear_radps, kDeviations * noise);
   const double usual = usual_at_rest(odometry);
   for (auto begin = odometry.begin(); begin != odometry.end();) {
-    begin = std::find_if(begin, odometry.end(), stands);
-    const auto end = std::find_if_not(begin, odometry.end(), stands);
+    begin = std::find_if(begin, odometry.end(), is_at_rest);
+    const auto end = std::find_if_not(begin, odometry.end(), is_at_rest);
     mark_turns(usual, clear, {begin, end});
     begin = end;
   }

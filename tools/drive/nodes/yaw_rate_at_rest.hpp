@@ -19,6 +19,9 @@ struct YawRateAtRest {
   [[nodiscard]] bool is_derived() const { return stated_derived || (is_known() && variance_per_s == 0); }
 };
 
+/// Tells whether a sample is a reading at rest: below 0.05 m/s, and not marked as a turn on the spot.
+[[nodiscard]] bool is_at_rest(const OdometrySample& sample);
+
 /// Turns on the spot do not count if they are marked.
 [[nodiscard]] YawRateAtRest yaw_rate_at_rest(std::span<const OdometrySample> odometry,
                                              bool stated_derived = false);

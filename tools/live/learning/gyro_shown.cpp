@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <waymark/core/base/detail/median.hpp>
+#include <waymark/tools/drive/nodes/yaw_rate_at_rest.hpp>
 
 namespace waymark::live {
 namespace {
@@ -16,20 +17,12 @@ struct BiasAtStop {
   double seconds = 0;
 };
 
-bool rests(const OdometrySample& sample) {
-  constexpr double kStands_mps = 0.05;
-  const Interval motion{.speed_mps = sample.speed_mps,
-                        .yaw_rate_radps = sample.yaw_rate_radps,
-                        .turns_on_spot = sample.turns_on_spot};
-  return motion.stands(kStands_mps) && !sample.assumed;
-}
-
 std::vector<BiasAtStop> biases_at_stops(const std::deque<OdometrySample>& odometry) {
   constexpr double kShortest_s = 2;
   std::vector<BiasAtStop> stops;
   for (auto begin = odometry.begin(); begin != odometry.end();) {
-    begin = std::find_if(begin, odometry.end(), rests);
-    const auto end = std::find_if_not(begin, odometry.end(), rests);
+    begin = std::find_if(begin, odometry.end(), drive::is_at_rest);
+    const auto end = std::find_if_not(begin, odometry.end(), drive::is_at_rest);
     double sum = 0;
     for (auto at = begin; at != end; ++at) sum += at->yaw_rate_radps;
     const double seconds = begin == end ? 0 : seconds_between(begin->stamp, std::prev(end)->stamp);

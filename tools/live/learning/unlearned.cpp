@@ -12,15 +12,23 @@
 namespace waymark::live {
 namespace {
 
+/// Returns where the options of an odometry are stated: its own if it is one of several.
+Options& own_options(drive::FusionSettings& settings, const drive::DriveDescription& description,
+                     std::size_t odometry) {
+  if (description.odometry.size() == 1) return settings.odometry_options;
+  return settings.sources[description.odometry[odometry].name].options;
+}
+
 /// States options of one odometry that are not stated.
 class Assumptions {
  public:
-  Assumptions(const drive::OdometryConfig& odometry, bool one_of_several, drive::FusionSettings& settings,
-              const TypeRegistry& registry) {
-    const drive::FusionSettings own = drive::for_relative(settings, odometry.name);
+  /// @param odometry index in the description
+  Assumptions(const drive::DriveDescription& description, std::size_t odometry,
+              drive::FusionSettings& settings, const TypeRegistry& registry) {
+    const drive::FusionSettings own = drive::for_relative(settings, description.odometry[odometry].name);
     known_ = &registry.odometry_model(own.odometry_model).options;
     given_ = own.odometry_options;
-    options_ = one_of_several ? &settings.sources[odometry.name].options : &settings.odometry_options;
+    options_ = &own_options(settings, description, odometry);
   }
   void state(const std::string& option, const std::string& value) {
     if (has_option(*known_, option) && !given_.contains(option)) options_->emplace(option, value);
@@ -53,9 +61,8 @@ drive::FusionSettings with_open_calibration(drive::FusionSettings stated,
   const bool by_default = !stated.calibration || *stated.calibration == drive::default_calibration();
   const bool calibrates = by_default && !drive::decided(stated, registry).calibration->empty();
   for (std::size_t source = 0; source < description.odometry.size(); ++source) {
-    const drive::OdometryConfig& odometry = description.odometry[source];
-    Assumptions assume(odometry, description.odometry.size() > 1, stated, registry);
-    if (is_gyro(odometry)) {
+    Assumptions assume(description, source, stated, registry);
+    if (is_gyro(description.odometry[source])) {
       assume.state("gyro_bias_sigma", "0.05");
       assume.state("gyro_bias_walk", shortest(bias_walk_of(so_far.odometry(source))));
     } else {
@@ -71,8 +78,8 @@ drive::FusionSettings with_usual_noise(drive::FusionSettings settings,
                                        const drive::DriveDescription& description,
                                        const TypeRegistry& registry) {
   if (!settings.estimates_noise.value_or(false)) return settings;
-  for (const drive::OdometryConfig& odometry : description.odometry) {
-    Assumptions assume(odometry, description.odometry.size() > 1, settings, registry);
+  for (std::size_t source = 0; source < description.odometry.size(); ++source) {
+    Assumptions assume(description, source, settings, registry);
     for (const OptionInfo& option : assume.known())
       if (option.prior) assume.state(option.name, expected(option));
   }
@@ -93,9 +100,7 @@ drive::FusionSettings with_noise_of_readings(drive::FusionSettings settings,
     if (!is_gyro(odometry) || is_stated || !has_option(known, kHeading)) continue;
     const double shown = white_noise_of(so_far.odometry(source));
     if (shown <= CheckedOptions(own.odometry_model, own.odometry_options, known).number(kHeading)) continue;
-    Options& options =
-        description.odometry.size() > 1 ? settings.sources[odometry.name].options : settings.odometry_options;
-    options[kHeading] = shortest(std::min(shown, 1.0));
+    own_options(settings, description, source)[kHeading] = shortest(std::min(shown, 1.0));
   }
   return settings;
 }

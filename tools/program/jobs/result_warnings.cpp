@@ -13,8 +13,6 @@ constexpr double kStateSigmas = 6;
 constexpr double kHeldSigmas = 3;
 constexpr double kNearEnd = 0.95;  // of what is usual
 constexpr double kWorseThanRaw = 1.5;
-/// No receiver and no reference system agree so well.
-constexpr double kSameLog_m = 1e-3;
 constexpr const char* kRemedy = "check units, signs, columns and clocks";
 
 /// The prior holds on the first value of a state. A short drive moves it by less than its error.
@@ -183,7 +181,7 @@ std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateR
   check_reference(evaluation, warnings);
   const double fused_m = evaluation.truth->fused.position.rmse_m;
   const evaluation::PositionMetrics& raw = evaluation.truth->gnss.position;
-  if (raw.count > 0 && raw.rmse_m < kSameLog_m)
+  if (raw.are_truth())
     warnings.push_back(
         "the fixes are the truth, to a millimetre: the same log seems to be stated as 'gnss' and 'truth', and "
         "nothing can be said against it; state another 'truth', or none");

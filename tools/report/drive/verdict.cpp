@@ -151,11 +151,9 @@ DriveVerdict verdict_of(const ReportedDrive& drive) {
     return verdict;
   }
   verdict.kind = better >= 0 ? drawing::Verdict::better : drawing::Verdict::worse;
-  constexpr double kSameLog_m = 1e-3;  // fixes that are the truth
-  const std::string how =
-      truth.gnss.position.rmse_m < kSameLog_m
-          ? "not comparable with"
-          : fmt::format("{:.0f} % {} than", std::abs(better), better >= 0 ? "better" : "worse");
+  const std::string how = truth.gnss.position.are_truth() ? "not comparable with"
+                                                          : fmt::format("{:.0f} % {} than", std::abs(better),
+                                                                        better >= 0 ? "better" : "worse");
   verdict.text += fmt::format(
       "Fused positions are {} raw GNSS: RMSE {:.3f} m against {:.3f} m, largest error {:.3f} m "
       "against {:.3f} m, at {} epochs.",

@@ -4,17 +4,13 @@
 #include <cmath>
 #include <utility>
 
+#include <waymark/tools/drive/nodes/yaw_rate_at_rest.hpp>
+
 namespace waymark::live {
 namespace {
 
 constexpr double kWindow_s = 1;
 constexpr double kFewestCalm = 5;
-
-bool may_turn_unseen(const OdometrySample& sample) {
-  constexpr double kStands_mps = 0.05;
-  const Interval motion{.speed_mps = sample.speed_mps, .yaw_rate_radps = sample.yaw_rate_radps};
-  return motion.stands(kStands_mps) && !sample.assumed;
-}
 
 }  // namespace
 
@@ -34,12 +30,12 @@ double SpotTurns::clear_radps() const {
 OdometrySample SpotTurns::judged(OdometrySample sample) {
   double step_s = window_.empty() ? 0 : seconds_between(window_.back().stamp, sample.stamp);
   const bool follows = step_s > 0 && step_s <= kWindow_s;
-  if (!may_turn_unseen(sample) || !follows) {
+  if (!drive::is_at_rest(sample) || !follows) {
     window_.clear();
     turns_ = false;
     step_s = 0;
   }
-  if (!may_turn_unseen(sample)) return sample;
+  if (!drive::is_at_rest(sample)) return sample;
   if (!window_.empty()) {
     const double difference = sample.yaw_rate_radps - window_.back().yaw_rate_radps;
     differences_ = std::min(differences_ + 1, 1000.0);
