@@ -87,7 +87,7 @@ TEST_CASE("accuracy: the defaults reach the goals on Gendarmenmarkt, but for pre
 }
 
 TEST_CASE("accuracy: the defaults reach the goals in outages of a minute on Aarhus") {
-  const Json metrics = metrics_of("aarhus_horsens", {"--withhold", "0", "--outage", "60/240", "--causal"});
+  const Json metrics = metrics_of("aarhus_horsens", {"--withhold", "0", "--outage", "60/480", "--causal"});
   if (metrics.is_null()) return;
   const Json& predictions = metrics["withheld_predictions"];
   CHECK(predictions["fused"]["at_fixes"]["rmse_m"].get<double>() <= 2.0);

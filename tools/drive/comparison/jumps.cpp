@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <waymark/core/base/detail/median.hpp>
+#include <waymark/tools/drive/comparison/precise_jumps.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::drive {
@@ -247,14 +248,14 @@ std::vector<Jump> slides_of(const ReckonedFixes& receiver) {
   return slides;
 }
 
-/// Adds the slides that are not within 10 s of a jump or a clearer slide: the fixes beside those slide too.
-void add_slides(const ReckonedFixes& receiver, const std::vector<Jump>& slides, std::vector<Jump>& jumps) {
-  for (const Jump& slide : slides) {
+/// Adds those that are not within 10 s of a jump or a clearer one: the fixes beside a slide slide too.
+void add_others(const ReckonedFixes& receiver, const std::vector<Jump>& others, std::vector<Jump>& jumps) {
+  for (const Jump& other : others) {
     const bool is_known = std::any_of(jumps.begin(), jumps.end(), [&](const Jump& jump) {
-      return seconds_from(receiver, slide.settled, jump.first) <= kSettled_s &&
-             seconds_from(receiver, jump.settled, slide.first) <= kSettled_s;
+      return seconds_from(receiver, other.settled, jump.first) <= kSettled_s &&
+             seconds_from(receiver, jump.settled, other.first) <= kSettled_s;
     });
-    if (!is_known) jumps.push_back(slide);
+    if (!is_known) jumps.push_back(other);
   }
   std::sort(jumps.begin(), jumps.end(), [](const Jump& a, const Jump& b) { return a.first < b.first; });
 }
@@ -324,7 +325,8 @@ std::vector<Jump> jumps_of(const ReckonedFixes& receiver) {
   std::vector<Jump> jumps;
   for (std::size_t i = 1; i < count; ++i)
     if (const std::optional<Jump> jump = jump_to(receiver, i)) jumps.push_back(*jump);
-  add_slides(receiver, slides_of(receiver), jumps);
+  add_others(receiver, slides_of(receiver), jumps);
+  add_others(receiver, precise_jumps_of(receiver), jumps);
   for (std::size_t j = 0; j < jumps.size(); ++j) {
     jumps[j].end = j + 1 < jumps.size() ? jumps[j + 1].settled : count;
     jumps[j].stays_s = seconds_from(receiver, jumps[j].first, std::min(jumps[j].end, count - 1));

@@ -16,8 +16,9 @@ struct Jump {
   std::size_t settled = 0;  ///< fix that is elsewhere for good; `first` if the fixes leave at once
   std::size_t end = 0;      ///< fix at which the next jump is over, or the number of fixes
   Eigen::Vector2d by = Eigen::Vector2d::Zero();  ///< m, in the frame of the fixes
-  double usual_m = 0;  ///< what the odometry usually leaves unexplained in such a time and way; 0: at once
-  double stays_s = 0;  ///< from `first` to `end`, or to the last fix
+  double usual_m = 0;    ///< what the odometry usually leaves unexplained in such a time and way; 0: at once
+  double claimed_m = 0;  ///< what the fixes beside it claim, if it is one of precise_jumps_of(); 0 else
+  double stays_s = 0;    ///< from `first` to `end`, or to the last fix
   /// the next jump undoes this one, and there are more fixes elsewhere: those between are wrong
   bool undone = false;
 };
@@ -26,7 +27,8 @@ struct Jump {
 /// along the fixes before. For 10 s before and after, all fixes agree with the odometry within a quarter of
 /// that. Between two fixes at most 5 s apart that is enough. What takes longer, at most 30 s (a receiver
 /// that smooths its positions, a gap), must also be five times what is usual between the fixes of this drive
-/// and its odometry in such a time, and on such a way.
+/// and its odometry in such a time, and on such a way. Of fixes that claim centimetres, smaller ones are found too
+/// (precise_jumps.hpp).
 [[nodiscard]] std::vector<Jump> jumps_of(const ReckonedFixes& receiver);
 
 }  // namespace waymark::drive

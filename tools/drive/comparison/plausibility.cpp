@@ -266,16 +266,22 @@ std::vector<char> marked(const std::vector<FrozenFixes>& frozen, std::size_t fix
 
 std::string in_words(const Jump& jump, const ReckonedFixes& receiver) {
   const double at_s = seconds_between(receiver.fixes.front().stamp, receiver.fixes[jump.first].stamp);
+  const double size_m = jump.by.norm();
+  constexpr double kWhole_m = 20;
+  const std::string size =
+      size_m < kWhole_m ? fmt::format("{:.2g} m", size_m) : fmt::format("{:.0f} m", size_m);
+  const std::string claim =
+      jump.claimed_m > 0 ? fmt::format(", where they claim {:.2g} m", jump.claimed_m) : std::string();
   if (jump.undone)
     return fmt::format(
-        "the fixes jump by {:.0f} m at {:.1f} s after the first fix, and back after {:.0f} s; the odometry does "
+        "the fixes jump by {} at {:.1f} s after the first fix{}, and back after {:.0f} s; the odometry does "
         "not move so: the {} fixes between are left out (rejected: jump)",
-        jump.by.norm(), at_s, jump.stays_s, jump.end - jump.first);
+        size, at_s, claim, jump.stays_s, jump.end - jump.first);
   return fmt::format(
-      "the fixes jump by {:.0f} m at {:.1f} s after the first fix, and stay there for {:.0f} s{}; the "
+      "the fixes jump by {} at {:.1f} s after the first fix{}, and stay there for {:.0f} s{}; the "
       "odometry does not move so: the fixes before or after it are wrong, and no gate rejects them once "
       "they agree among themselves",
-      jump.by.norm(), at_s, jump.stays_s, jump.end < receiver.fixes.size() ? "" : ", until the end");
+      size, at_s, claim, jump.stays_s, jump.end < receiver.fixes.size() ? "" : ", until the end");
 }
 
 /// The words for jumps that name at most three of them. A jump back is named with the one it undoes.
@@ -287,8 +293,8 @@ std::vector<std::string> jumps_in_words(const ReckonedFixes& receiver) {
   for (std::size_t i = 0; i < jumps.size(); ++i) {
     const bool jumps_back = i > 0 && jumps[i - 1].undone;
     const bool at_once = jumps[i].usual_m == 0;  // what takes time and stays may be the odometry's
-    if (!jumps_back && (jumps[i].undone || (at_once && jumps[i].by.norm() >= kLarge_m)))
-      sentences.push_back(in_words(jumps[i], receiver));
+    const bool is_told = at_once && (jumps[i].by.norm() >= kLarge_m || jumps[i].claimed_m > 0);
+    if (!jumps_back && (jumps[i].undone || is_told)) sentences.push_back(in_words(jumps[i], receiver));
   }
   if (sentences.size() > kMost) {
     const std::size_t more = sentences.size() - kMost;

@@ -150,16 +150,17 @@ DriveVerdict verdict_of(const ReportedDrive& drive) {
                     truth.fused.position.rmse_m, truth.fused.position.max_m, truth.fused.position.count);
     return verdict;
   }
-  verdict.kind = better >= 0 ? drawing::Verdict::better : drawing::Verdict::worse;
-  const std::string how = truth.gnss.position.are_truth() ? "not comparable with"
-                                                          : fmt::format("{:.0f} % {} than", std::abs(better),
-                                                                        better >= 0 ? "better" : "worse");
+  const bool comparable = !truth.gnss.position.are_truth();
+  if (comparable) verdict.kind = better >= 0 ? drawing::Verdict::better : drawing::Verdict::worse;
+  const std::string how =
+      comparable ? fmt::format("{:.0f} % {} than", std::abs(better), better >= 0 ? "better" : "worse")
+                 : "not comparable with";
   verdict.text += fmt::format(
       "Fused positions are {} raw GNSS: RMSE {:.3f} m against {:.3f} m, largest error {:.3f} m "
       "against {:.3f} m, at {} epochs.",
       how, truth.fused.position.rmse_m, truth.gnss.position.rmse_m, truth.fused.position.max_m,
       truth.gnss.position.max_m, truth.fused.position.count);
-  verdict.text += describe_losses(truth.improvement);
+  if (comparable) verdict.text += describe_losses(truth.improvement);
   return verdict;
 }
 

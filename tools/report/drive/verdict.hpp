@@ -17,8 +17,8 @@ struct DriveVerdict {
 };
 
 /// Returns the verdict. With truth it says whether the fused positions are better or worse than raw
-/// GNSS. Without, it says how well they predict fixes that were kept out, whether the stated
-/// covariances fit the residuals of the fixes, and where the stated sigma is largest.
+/// GNSS, unless the fixes are the truth. Without, it says how well they predict fixes that were kept out,
+/// whether the stated covariances fit the residuals of the fixes, and where the stated sigma is largest.
 [[nodiscard]] DriveVerdict verdict_of(const ReportedDrive& drive);
 
 /// Describes whether a mean NIS is as it should be: "1.92, and 2 is right: ...".
