@@ -137,9 +137,9 @@ std::optional<double> precise_claim_m(const ReckonedFixes& receiver, std::size_t
 }  // namespace
 
 std::vector<Jump> precise_jumps_of(const ReckonedFixes& receiver) {
-  constexpr double kSigmas = 20;
+  constexpr double kSigmas = 15;
   constexpr double kSmallest_m = 0.2;
-  constexpr double kQuarter = 0.25;
+  constexpr double kThird = 1.0 / 3;
   constexpr double kUnusual = 3;
   constexpr std::size_t kFewest = 100;
   std::vector<std::optional<double>> claims_m(receiver.fixes.size());
@@ -164,7 +164,7 @@ std::vector<Jump> precise_jumps_of(const ReckonedFixes& receiver) {
     if (!steps[i]) continue;
     const double size_m = steps[i]->by.norm();
     const double least_m = std::max({kSmallest_m, kSigmas * *claims_m[i], kUnusual * *all_but_few});
-    if (size_m < least_m || steps[i]->around_m > kQuarter * size_m) continue;
+    if (size_m < least_m || steps[i]->around_m > kThird * size_m) continue;
     jumps.push_back({.first = i,
                      .settled = i,
                      .by = rotate(left[i].turned_rad, steps[i]->by),
