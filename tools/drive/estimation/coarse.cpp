@@ -230,6 +230,60 @@ CoarseDrive parts_of(const CoarseDrive& whole, const std::vector<NodeRange>& ran
   return parts;
 }
 
+/// Where a drive is parked: a stop of hours is worth no hours of a sample, and a part that only stands has no heading.
+struct Driving {
+  std::vector<double> until_s;  ///< driven up to each node, the beginning of each stop included
+  std::vector<char> is_parked;  ///< of each interval: it belongs to the rest of a stop
+
+  /// Returns the nodes of a time that is driven.
+  [[nodiscard]] NodeRange nodes_within(double begin_s, double length_s) const {
+    const auto node_at = [&](double moment_s) {
+      return std::lower_bound(until_s.begin(), until_s.end(), moment_s) - until_s.begin();
+    };
+    return {static_cast<std::size_t>(std::max<std::ptrdiff_t>(node_at(begin_s) - 1, 0)),
+            static_cast<std::size_t>(std::min(node_at(begin_s + length_s), std::ssize(until_s) - 1))};
+  }
+};
+
+Driving driving_of(const PlacedDrive& drive) {
+  constexpr double kStop_s = 1200;
+  Driving driving{.until_s = {0}, .is_parked = {}};
+  double stood_s = 0;
+  for (const Interval& interval : drive.timeline.intervals) {
+    const bool stands = !interval.bridged && interval.stands(drive.standstill_mps);
+    const bool is_parked = stands && stood_s >= kStop_s;
+    stood_s = stands ? stood_s + interval.dt_s : 0;
+    driving.is_parked.push_back(is_parked);
+    driving.until_s.push_back(driving.until_s.back() + (is_parked ? 0 : interval.dt_s));
+  }
+  return driving;
+}
+
+/// Returns the pieces of a range between parking in which the vehicle drives far enough to have a heading.
+std::vector<NodeRange> without_parking(const NodeRange& range, const Driving& driving,
+                                       const PlacedDrive& drive) {
+  constexpr double kLeast_m = 50;
+  std::vector<NodeRange> pieces;
+  NodeRange piece{range.first, range.first};
+  double way_m = 0;
+  const auto end_piece = [&](std::size_t next) {
+    if (way_m >= kLeast_m) pieces.push_back(piece);
+    piece = {next, next};
+    way_m = 0;
+  };
+  for (std::size_t i = range.first; i < range.last; ++i) {
+    if (driving.is_parked[i] != 0) {
+      end_piece(i + 1);
+      continue;
+    }
+    const Interval& interval = drive.timeline.intervals[i];
+    if (!interval.bridged) way_m += std::abs(interval.speed_mps) * interval.dt_s;
+    piece.last = i + 1;
+  }
+  end_piece(range.last);
+  return pieces;
+}
+
 }  // namespace
 
 CoarseDrive coarsen(const PlacedDrive& placed, std::span<const PreparedSensor> sensors, double fix_period_s,
@@ -311,13 +365,20 @@ CoarseDrive sample_of(CoarseDrive whole, std::size_t windows, double window_s) {
   const double count = static_cast<double>(windows);
   if (whole_s < kWorth * count * window_s || whole.drive.fixes.empty() || !whole.drive.relative.empty())
     return whole;
+  const Driving driving = driving_of(whole.drive);
+  const double driven_s = driving.until_s.back();
   std::vector<NodeRange> ranges;
-  for (std::size_t i = 0; i < windows; ++i) {
-    const double middle_s = (static_cast<double>(i) + 0.5) / count * whole_s;
-    const NodeRange range = nodes_within(stamps, stamps.front().later(middle_s - 0.5 * window_s), window_s);
-    // in a gap of the odometry there is nothing
-    if (range.last > range.first && (ranges.empty() || range.first > ranges.back().last))
-      ranges.push_back(range);
+  if (driven_s < kWorth * count * window_s) {
+    ranges = without_parking({0, stamps.size() - 1}, driving, whole.drive);
+  } else {
+    for (std::size_t i = 0; i < windows; ++i) {
+      const double middle_s = (static_cast<double>(i) + 0.5) / count * driven_s;
+      const NodeRange range = driving.nodes_within(middle_s - 0.5 * window_s, window_s);
+      // in a gap of the odometry there is nothing
+      if (range.last <= range.first || (!ranges.empty() && range.first <= ranges.back().last)) continue;
+      const std::vector<NodeRange> pieces = without_parking(range, driving, whole.drive);
+      ranges.insert(ranges.end(), pieces.begin(), pieces.end());
+    }
   }
   if (ranges.empty()) return whole;
   return parts_of(whole, ranges);

@@ -33,9 +33,10 @@ void keep_poses(const Graph& graph, CoarseDrive& coarse);
 [[nodiscard]] CoarseDrive middle_of(const CoarseDrive& whole, double length_s);
 
 /// Returns windows of a long drive at equal distances in time, with gaps of the odometry between them, so that
-/// what is estimated from it costs the same for an hour and a day. The whole if they are most of it, if there
-/// are no fixes, or if several odometries measured it. Two hours tell the parameters of the noise to a tenth.
-/// (From 25 minutes of an hour, the positions of simulated drives were 1 to 10 % worse.)
+/// what is estimated from it costs the same for an hour and a day. Of stops of more than 20 minutes the rest is no
+/// part of that time, nor of the sample, nor is what drives less than 50 m between two of them. The whole if that
+/// is most of it, if there are no fixes, or if several odometries measured it. Two hours tell the parameters of the
+/// noise to a tenth. (From 25 minutes of an hour, the positions of simulated drives were 1 to 10 % worse.)
 [[nodiscard]] CoarseDrive sample_of(CoarseDrive whole, std::size_t windows = 12, double window_s = 600);
 
 }  // namespace waymark::drive

@@ -44,33 +44,37 @@ std::optional<VertexIndex> time_offset_vertex(const Graph& graph,
   return std::nullopt;
 }
 
-namespace {
-
 /// The time offsets of the groups of a coarse drive, in the graph of one round.
-struct Round {
+struct DelayRound {
   std::vector<AbsoluteGroup> groups;
   Graph graph;
   std::vector<std::optional<VertexIndex>> offsets;  ///< one for each group
 
+  /// @return s, of a group that has one
+  [[nodiscard]] double offset(std::size_t group) const { return graph.value(*offsets[group])[0]; }
   [[nodiscard]] bool estimates() const {
     return std::any_of(offsets.begin(), offsets.end(), [](const auto& offset) { return offset.has_value(); });
   }
 };
 
-Round begin_round(const CoarseDrive& coarse, const FusionSettings& settings, const TypeRegistry& registry) {
+namespace {
+
+DelayRound begin_round(const CoarseDrive& coarse, const FusionSettings& settings,
+                       const TypeRegistry& registry) {
   BuiltGraph built = build_graph(coarse.drive, coarse.sensors, settings, registry);
-  Round round{.groups = groups_of(coarse.drive, settings), .graph = std::move(built.graph), .offsets = {}};
+  DelayRound round{
+      .groups = groups_of(coarse.drive, settings), .graph = std::move(built.graph), .offsets = {}};
   for (const AbsoluteGroup& group : round.groups)
     round.offsets.push_back(time_offset_vertex(round.graph, built.shares[group.name].vertices));
   return round;
 }
 
 /// Takes the offsets of a minimum. @returns how far the farthest one moved
-double take_offsets(const Round& round, PlacedDrive& coarse) {
+double take_offsets(const DelayRound& round, PlacedDrive& coarse) {
   double farthest_s = 0;
   for (std::size_t g = 0; g < round.groups.size(); ++g) {
     if (!round.offsets[g]) continue;
-    const double offset_s = round.graph.value(*round.offsets[g])[0];
+    const double offset_s = round.offset(g);
     for (const int source : round.groups[g].sources) {
       double& assumed_s = coarse.time_offsets_s[static_cast<std::size_t>(source)];
       farthest_s = std::max(farthest_s, std::abs(offset_s - assumed_s));
@@ -80,21 +84,40 @@ double take_offsets(const Round& round, PlacedDrive& coarse) {
   return farthest_s;
 }
 
-std::vector<std::optional<TimeOffset>> found_in(const Round& round, const FusionSettings& settings,
+std::vector<std::optional<TimeOffset>> found_in(const DelayRound& round, const FusionSettings& settings,
                                                 const TypeRegistry& registry) {
   std::vector<std::optional<TimeOffset>> found(round.groups.size());
   for (std::size_t g = 0; g < round.groups.size(); ++g) {
     if (!round.offsets[g]) continue;
     const auto covariances = marginal_covariances(round.graph, std::vector{*round.offsets[g]});
     found[g] = TimeOffset{
-        .value_s = round.graph.value(*round.offsets[g])[0],
+        .value_s = round.offset(g),
         .sigma_s = std::sqrt(covariances[0](0, 0)),
         .prior_sigma_s = prior_sigma_of(for_absolute(settings, round.groups[g].name, registry), registry)};
   }
   return found;
 }
 
+/// Makes speeds what they are if they were read wrong in proportion to the acceleration, by the slip times it.
+void remove_slip(double slip_per_mps2, PlacedDrive& drive) {
+  std::vector<Interval>& intervals = drive.timeline.intervals;
+  const std::vector<Interval> read = intervals;
+  for (std::size_t i = 1; i + 1 < read.size(); ++i) {
+    const Interval& before = read[i - 1];
+    const Interval& after = read[i + 1];
+    if (before.bridged || read[i].bridged || after.bridged) continue;
+    const double apart_s = read[i].dt_s + 0.5 * (before.dt_s + after.dt_s);
+    const double acceleration_mps2 = (after.speed_mps - before.speed_mps) / apart_s;
+    intervals[i].speed_mps = read[i].speed_mps * (1 - slip_per_mps2 * acceleration_mps2);
+  }
+}
+
 }  // namespace
+
+struct TimeOffsetSearch::Minimum {
+  DelayRound round;
+  double cost = 0;  ///< half chi2
+};
 
 TimeOffsetSearch::TimeOffsetSearch(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                                    const TypeRegistry& registry, const std::function<void()>& between)
@@ -102,25 +125,67 @@ TimeOffsetSearch::TimeOffsetSearch(const PlacedDrive& placed, std::span<const Pr
       registry_(registry),
       between_(between) {}
 
-std::vector<std::optional<TimeOffset>> TimeOffsetSearch::find(const FusionSettings& settings,
-                                                              PlacedDrive& placed) {
-  coarse_.drive.time_offsets_s = placed.time_offsets_s;
+TimeOffsetSearch::Minimum TimeOffsetSearch::converge(const FusionSettings& settings,
+                                                     CoarseDrive& coarse) const {
   const auto algorithm = registry_.make_algorithm("dogleg");
   BlockCholesky cholesky;
   StructuredSolver solver{cholesky};
   for (int count = 1;; ++count) {
-    Round round = begin_round(coarse_, settings, registry_);
-    if (!round.estimates()) return std::vector<std::optional<TimeOffset>>(round.groups.size());
+    Minimum minimum{begin_round(coarse, settings, registry_)};
+    DelayRound& round = minimum.round;
+    if (!round.estimates()) return minimum;
     solver.build(round.graph, find_gauge(round.graph).held);
-    optimize(round.graph, solver, *algorithm, {});
+    minimum.cost = 0.5 * optimize(round.graph, solver, *algorithm, {}).final_chi2;
     if (between_) between_();
-    keep_poses(round.graph, coarse_);
-    const double moved_s = take_offsets(round, coarse_.drive);
-    if (moved_s < kSameOffset_s || count == kMostRounds) {
-      placed.time_offsets_s = coarse_.drive.time_offsets_s;
-      return found_in(round, settings, registry_);
-    }
+    keep_poses(round.graph, coarse);
+    const double moved_s = take_offsets(round, coarse.drive);
+    if (moved_s < kSameOffset_s || count == kMostRounds) return minimum;
   }
+}
+
+void TimeOffsetSearch::admit_slip(const FusionSettings& settings, Minimum minimum,
+                                  std::vector<std::optional<TimeOffset>>& offsets) const {
+  constexpr double kUsual_per_mps2 = 0.005;
+  constexpr int kMostSteps = 4;
+  constexpr double kReached = 0.25;
+  // In units of the usual slip, which is the deviation of its prior.
+  double slip = 0;
+  const auto minimum_with = [&](double units) {
+    CoarseDrive slipped = coarse_;
+    remove_slip(units * kUsual_per_mps2, slipped.drive);
+    return converge(settings, slipped);
+  };
+  for (int count = 1;; ++count) {
+    const Minimum less = minimum_with(slip - 1);
+    const Minimum more = minimum_with(slip + 1);
+    const double gradient = slip + 0.5 * (more.cost - less.cost);
+    const double curvature = 1 + std::max(0.0, less.cost - 2 * minimum.cost + more.cost);
+    const double step = -gradient / curvature;
+    slip += step;
+    if (std::abs(step) < kReached || count == kMostSteps) {
+      for (std::size_t g = 0; g < offsets.size(); ++g) {
+        if (!offsets[g]) continue;
+        const double per_slip_s = 0.5 * (more.round.offset(g) - less.round.offset(g));
+        offsets[g]->value_s = minimum.round.offset(g) + per_slip_s * step;
+        offsets[g]->sigma_s = std::hypot(offsets[g]->sigma_s, per_slip_s / std::sqrt(curvature));
+      }
+      return;
+    }
+    minimum = minimum_with(slip);
+  }
+}
+
+std::vector<std::optional<TimeOffset>> TimeOffsetSearch::find(const FusionSettings& settings,
+                                                              PlacedDrive& placed) {
+  coarse_.drive.time_offsets_s = placed.time_offsets_s;
+  Minimum minimum = converge(settings, coarse_);
+  if (!minimum.round.estimates()) return std::vector<std::optional<TimeOffset>>(minimum.round.groups.size());
+  placed.time_offsets_s = coarse_.drive.time_offsets_s;
+  std::vector<std::optional<TimeOffset>> found = found_in(minimum.round, settings, registry_);
+  const bool seems_late = std::any_of(
+      found.begin(), found.end(), [](const auto& offset) { return offset && offset->odds_of_none() <= 1; });
+  if (seems_late) admit_slip(settings, std::move(minimum), found);
+  return found;
 }
 
 }  // namespace waymark::drive

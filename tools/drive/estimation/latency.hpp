@@ -18,9 +18,11 @@
 
 namespace waymark::drive {
 
-/// What a drive says about the delay of its fixes.
+/// What a drive says about the delay of its fixes. Where a delay seems probable, the speeds may be wrong in proportion to
+/// the acceleration instead (tyres slip as they pull and brake, by 0.5 % per m/s^2): a way that is d late in speed v is
+/// v d behind, and that of such speeds by half of the slip times v^2, which is the same where v hardly varies.
 struct TimeOffset {
-  double value_s = 0;
+  double value_s = 0;        ///< posterior mean
   double sigma_s = 0;        ///< posterior
   double prior_sigma_s = 0;  ///< 0: the modeling has no option time_offset_sigma; the odds are then 0
 
@@ -47,6 +49,14 @@ class TimeOffsetSearch {
   std::vector<std::optional<TimeOffset>> find(const FusionSettings& settings, PlacedDrive& placed);
 
  private:
+  struct Minimum;
+
+  /// Fuses a drive until its offsets no longer move, and leaves them and its poses there.
+  [[nodiscard]] Minimum converge(const FusionSettings& settings, CoarseDrive& coarse) const;
+  /// Makes what is known of the offsets what is known if the speeds may slip.
+  void admit_slip(const FusionSettings& settings, Minimum minimum,
+                  std::vector<std::optional<TimeOffset>>& offsets) const;
+
   CoarseDrive coarse_;
   const TypeRegistry& registry_;
   std::function<void()> between_;

@@ -534,6 +534,32 @@ TEST_CASE("coarse: a sample of a long drive has its windows, and gaps of the odo
   CHECK(sample_of(whole, 3, 0.3 * length_s).drive.timeline.stamps == all);
 }
 
+TEST_CASE("coarse: of a drive that is parked for hours, what drives and 20 minutes of the stop are taken") {
+  const PreparedDrive moving = make_drive({}, 5);
+  PreparedDrive drive = moving;
+  const auto half = std::ssize(moving.odometry) / 2;
+  drive.odometry.resize(static_cast<std::size_t>(half));
+  constexpr double kParked_s = 8 * 3600;
+  const Stamp stop = drive.odometry.back().stamp;
+  for (double t = 1; t < kParked_s; ++t) drive.odometry.push_back({.stamp = stop.later(t)});
+  for (auto i = half; i < std::ssize(moving.odometry); ++i) {
+    drive.odometry.push_back(moving.odometry[static_cast<std::size_t>(i)]);
+    drive.odometry.back().stamp = drive.odometry.back().stamp.later(kParked_s);
+  }
+  for (Fix& fix : drive.fixes)
+    if (fix.stamp > stop) fix.stamp = fix.stamp.later(kParked_s);
+  const CoarseDrive whole =
+      coarsen(place_drive(drive, timeline_of(drive), complete_settings(), registry()), {});
+  const PlacedDrive sample = sample_of(whole).drive;
+  double measured_s = 0;
+  for (const Interval& interval : sample.timeline.intervals)
+    measured_s += interval.bridged ? 0 : interval.dt_s;
+  CHECK(
+      measured_s ==
+      Approx(seconds_between(moving.odometry.front().stamp, moving.odometry.back().stamp) + 1200).margin(5));
+  CHECK(sample.fixes.size() == whole.drive.fixes.size());
+}
+
 TEST_CASE("fuse: modelings that agree on gate and guess share them, and give what each gives alone") {
   const PreparedDrive drive = make_drive({}, 7);
   Fusion fusion(drive, registry());
