@@ -109,6 +109,9 @@ struct LogRequest {
   /// In place of metric_frame: `easting` and `northing` are metres east and north of this place, on its
   /// tangent plane.
   std::optional<LocalOrigin> local_origin;
+  /// The samples are used before the log ends: what a reader concludes from the whole log otherwise, it concludes
+  /// from the records so far.
+  bool is_live = false;
 };
 
 /// One instant on two clocks: when the logger wrote a message, and the GNSS time in the message.

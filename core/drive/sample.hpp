@@ -31,6 +31,9 @@ struct OdometrySample {
   bool assumed = false;
   /// the vehicle turns without moving, slower than Interval::stands() can tell from one reading
   bool turns_on_spot = false;
+  /// Error of the turn that this reading itself has, as white noise, rad^2/s: that of a yaw rate from the readings
+  /// of a direction. The noise of the odometry's model comes on top.
+  double turn_variance_per_s = 0;
 };
 
 /// The motion between two consecutive nodes of a drive. Speed and yaw rate are means over dt.

@@ -111,7 +111,7 @@ TEST_CASE("metric positions: columns name one kind of position") {
   request.columns = {{"easting", {"x", "", ""}}, {"latitude", {"y", "", ""}}};
   CHECK_THROWS_MATCHES(read_csv("time,x,y\n1,5,6\n", request), InputError,
                        Message("log.csv:1:1: columns name two kinds of position: keep latitude and "
-                               "longitude, or easting and northing"));
+                               "longitude, easting and northing, or ecef_x, ecef_y and ecef_z"));
   request.columns.erase("latitude");
   CHECK_THROWS_MATCHES(
       read_csv("time,x,y\n1,5,6\n", request), InputError,

@@ -106,7 +106,7 @@ set(WAYMARK_PUBLIC_HEADERS
   tools/drive/description/drive_file.hpp
   tools/drive/description/fusion_settings.hpp
   tools/drive/logs/memory_log.hpp
-  tools/drive/logs/odometry_parts.hpp
+  tools/drive/logs/parts/odometry_parts.hpp
   tools/drive/logs/prepare.hpp
   tools/drive/model/fuse.hpp
   tools/drive/model/minimize.hpp

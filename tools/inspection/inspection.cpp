@@ -13,7 +13,7 @@
 #include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/logs/detail/can/dbc_set.hpp>
 #include <waymark/formats/logs/detail/can/layouts/can_layout.hpp>
-#include <waymark/formats/logs/detail/common/quantity.hpp>
+#include <waymark/formats/logs/detail/csv/composed.hpp>
 #include <waymark/formats/logs/log_file.hpp>
 #include <waymark/tools/inspection/log_clock.hpp>
 #include <waymark/tools/inspection/suspicions.hpp>
@@ -118,9 +118,11 @@ LogRequest basic_request(const LogInspection& log, StreamKind stream) {
 bool map_columns(const LogInspection& log, LogRequest& request) {
   const auto columns = proposed_columns(log, request.stream);
   for (const auto& [quantity, column] : columns)
-    request.columns[quantity] = {column->name, column->proposal.unit, column->proposal.convention};
+    request.columns[quantity] = {reference_of(*column), column->proposal.unit, column->proposal.convention,
+                                 column->proposal.scale, column->proposal.missing};
   if (request.stream == StreamKind::gnss)
-    return columns.contains("latitude") && columns.contains("longitude");
+    return (columns.contains("latitude") && columns.contains("longitude")) ||
+           (columns.contains("ecef_x") && columns.contains("ecef_y") && columns.contains("ecef_z"));
   return columns.size() > (log.table ? 1U : 0U);
 }
 
@@ -319,7 +321,7 @@ bool is_stream_quantity(std::string_view quantity, StreamKind stream) {
   LogRequest request;
   request.stream = stream;
   if (stream == StreamKind::odometry) request.readings = formats::odometry_channels();
-  const std::vector<formats::Quantity> known = formats::quantities(request);
+  const std::vector<formats::Quantity> known = formats::table_quantities(request);
   return formats::find_quantity(known, quantity) != nullptr;
 }
 
@@ -396,6 +398,7 @@ std::map<std::string, const ColumnSummary*> proposed_columns(const LogInspection
     if (stream == StreamKind::gnss && quantity == "heading")
       quantity = heading_is_course(column) ? "course" : "";
     if (quantity.empty() || !is_stream_quantity(quantity, stream)) continue;
+    if (log.can && formats::find_piece(quantity) != nullptr) continue;  // only tables compose
     // The speed of a receiver on the bus is not odometry.
     if (log.can && stream == StreamKind::odometry && quantity == "speed" && is_of_receiver(column.name))
       continue;
@@ -403,6 +406,16 @@ std::map<std::string, const ColumnSummary*> proposed_columns(const LogInspection
       continue;
     columns.emplace(quantity, &column);
   }
+  // Pieces serve where the whole is not there, all together.
+  const bool has_whole = stream == StreamKind::gnss ? columns.contains("speed") && columns.contains("course")
+                                                    : columns.contains("speed");
+  if (has_whole || !columns.contains("velocity_east") || !columns.contains("velocity_north"))
+    for (const char* component : {"velocity_east", "velocity_north"}) columns.erase(component);
+  const bool in_degrees = columns.contains("latitude") && columns.contains("longitude");
+  if (in_degrees || !columns.contains("ecef_x") || !columns.contains("ecef_y") || !columns.contains("ecef_z"))
+    for (const char* coordinate : {"ecef_x", "ecef_y", "ecef_z"}) columns.erase(coordinate);
+  else
+    for (const char* coordinate : {"latitude", "longitude"}) columns.erase(coordinate);
   // A single speed beside positions is that of the receiver.
   const bool speed_alone = columns.contains("speed") && columns.size() == 1U + columns.count("time");
   const auto is_latitude = [](const ColumnSummary& column) { return column.proposal.quantity == "latitude"; };

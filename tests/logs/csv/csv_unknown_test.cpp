@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -80,6 +81,25 @@ TEST_CASE(
   LogRequest stated = plain;
   stated.columns["speed"] = {"speed", "", "", 1, -999.0};
   CHECK(kept(speeds({"-1", "0.5", "-1", "-1"}), stated) == 3);
+}
+
+TEST_CASE("csv: a live log leaves speeds of -1 out from the first one on, until another number is negative") {
+  LogRequest live = csv_request(StreamKind::odometry);
+  live.is_live = true;
+  const auto speeds_of = [&](const std::string& text) {
+    std::vector<double> values;
+    const LogData data = read_csv(text, live);
+    CHECK(data.corrupt == 0);
+    for (const OdometrySample& sample : data.odometry) values.push_back(sample.speed_mps);
+    return values;
+  };
+  CHECK(speeds_of(speeds({"-1", "-1", "0.4", "-1", "2"})) == std::vector<double>{0.4, 2});
+  CHECK(speeds_of(speeds({"0.4", "-0.6", "-1", "-1"})) == std::vector<double>{0.4, -0.6, -1, -1});
+  CHECK(speeds_of(speeds({"3", "0", "-1", "-2"})) ==
+        std::vector<double>{3, 0, -1, -2});  // a bus of whole m/s
+  LogRequest stated = live;
+  stated.columns["speed"] = {"speed", "", "", 1, -999.0};
+  CHECK(read_csv(speeds({"0.5", "-1"}), stated).odometry.size() == 2);
 }
 
 }  // namespace csv_unknown_test

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <waymark/formats/logs/detail/place/geocentric.hpp>
+
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
 #include "support/skip.hpp"
@@ -296,6 +298,24 @@ const Dialect kDialects[] = {
      [](int s, double lat, double lon) {
        return fmt::format("{},0,{:.9f},{:.9f}", 1599998400 + s, lat, lon);
      }},
+    {"titles, settings, units and sources",
+     "Session of a logger ( http://example.org/ )\nLaps,3\ntime_unix,lat,lon,v\ns,deg,deg,m/s\n,100: gps,100: gps,\n",
+     [](int s, double lat, double lon) {
+       return fmt::format("{},{:.9f},{:.9f},10", 1599998400 + s, lat, lon);
+     }},
+    {"a separator that is stated", "sep=;\ntime_unix;lat;lon\n",
+     [](int s, double lat, double lon) { return fmt::format("{};{:.9f};{:.9f}", 1599998400 + s, lat, lon); }},
+    {"Earth-centred",
+     "time_unix,SvPositionXEcefMeters,WlsPositionXEcefMeters,WlsPositionYEcefMeters,WlsPositionZEcefMeters\n",
+     [](int s, double lat, double lon) {
+       const Eigen::Vector3d ecef = waymark::formats::ecef_from_geodetic({lat, lon, 300});
+       return fmt::format("{},1e7,{:.4f},{:.4f},{:.4f}", 1599998400 + s, ecef.x(), ecef.y(), ecef.z());
+     }},
+    {"a velocity, and numbers for nothing", "time_unix,lat,lon,vel_north,vel_east,hdop,heading_acc\n",
+     [](int s, double lat, double lon) {
+       return fmt::format("{},{:.9f},{:.9f},10,0.001,{},{}", 1599998400 + s, lat, lon,
+                          s % 7 == 0 ? 9999. : 0.9, s % 5 == 0 ? -999 : 1.5);
+     }},
     {"topics before the members", "__time,/fix/latitude,/fix/longitude\n",
      [](int s, double lat, double lon) {
        return fmt::format("{}.0,{:.9f},{:.9f}", 1599998400 + s, lat, lon);
@@ -384,6 +404,29 @@ TEST_CASE("init: a table of GPS seconds without a name for them takes its epoch 
           0);
   CHECK(contains(read_text(folder + "drive.yaml"), "CHECK: its numbers are GPS seconds since 1980"));
   CHECK(contains(run({"run", folder + "drive.yaml", "-o", folder + "out"}).out, "40 fixes"));
+}
+
+TEST_CASE(
+    "init: numbers that mean 'not known', wheels in rad/s and fractions of seconds are proposed as keys") {
+  const std::string folder = fresh_folder();
+  std::string fixes = "stamp_sec,stamp_nsec,lat,lon,speed [km/h]\n";
+  std::string wheels = "time_unix,wheel_speed_rl [rad/s],wheel_speed_rr [rad/s],yaw_rate\n";
+  for (int s = 0; s < 40; ++s) {
+    fixes += fmt::format("{},{},{:.9f},11.2,{}\n", 1599998400 + s, 250'000'000, 48.1 + s * 9 / 111200.,
+                         s % 8 == 0 ? 999 : 32.4);
+    for (int i = 0; i < 10; ++i)
+      wheels += fmt::format("{:.1f},30,30,{}\n", kUnix + s + 0.1 * i, i == 3 ? -9999 : 0.001 * i);
+  }
+  write_text(folder + "fixes.csv", fixes);
+  write_text(folder + "wheels.csv", wheels);
+  const RunResult fused = fused_after_init(folder, "fixes.csv", "wheels.csv");
+  const std::string yaml = read_text(folder + "drive.yaml");
+  INFO(yaml);
+  CHECK(contains(yaml, "time_fraction: {column: stamp_nsec, unit: ns}"));
+  CHECK(contains(yaml, "unit: km/h, missing: 999}"));
+  CHECK(contains(yaml, "{column: \"wheel_speed_rl [rad/s]\", scale: 0.3}"));
+  CHECK(contains(yaml, "yaw_rate: {column: yaw_rate, missing: -9999}"));
+  CHECK(contains(fused.out, "359 m by odometry"));  // 30 rad/s of 0.3 m for 39.9 s
 }
 
 TEST_CASE("init: metres in a plane are named with the keys to state") {

@@ -13,9 +13,9 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/formats/logs/channels.hpp>
-#include <waymark/formats/logs/detail/common/quantity.hpp>
+#include <waymark/formats/logs/detail/csv/composed.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
-#include <waymark/tools/drive/logs/odometry_parts.hpp>
+#include <waymark/tools/drive/logs/parts/odometry_parts.hpp>
 
 #include "support/markdown.hpp"
 #include "support/paths.hpp"
@@ -135,7 +135,7 @@ TEST_CASE(
     requests.back().stream = stream;
   }
   for (const LogRequest& request : requests) {
-    for (const Quantity& quantity : quantities(request)) {
+    for (const Quantity& quantity : table_quantities(request)) {
       std::string word(1, '`');  // piece by piece: g++ 12 warns of an overflow that is none
       word += quantity.name;
       named(word += '`');

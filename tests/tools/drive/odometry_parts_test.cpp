@@ -10,7 +10,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/logs/detail/csv/csv_log.hpp>
-#include <waymark/tools/drive/logs/odometry_parts.hpp>
+#include <waymark/tools/drive/logs/parts/odometry_parts.hpp>
 #include <waymark/tools/drive/logs/time_series.hpp>
 
 namespace odometry_parts_test {

@@ -329,8 +329,8 @@ TEST_CASE("inspection: names of columns and signals say quantity, unit and sense
   CHECK(told("Geschwindigkeit [km/h]") == "speed|km/h|");
   CHECK(told("Gierrate [°/s]") == "yaw_rate|deg/s|");
   CHECK(told("Geographische Länge") == "longitude||");
-  CHECK(told("velocity_north") == "||");
-  CHECK(told("vel_east") == "||");
+  CHECK(told("velocity_north") == "velocity_north||");
+  CHECK(told("vel_east") == "velocity_east||");
   CHECK(told("VelForward (km/h)") == "speed|km/h|");
   CHECK(told("Speed (OBD)(km/h)") == "speed|km/h|");
   CHECK(told("/odom/twist/twist/angular/z") == "yaw_rate||");

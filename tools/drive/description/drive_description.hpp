@@ -16,7 +16,7 @@
 #include <waymark/core/drive/stamp.hpp>
 #include <waymark/core/registry/options.hpp>
 #include <waymark/tools/drive/logs/memory_log.hpp>
-#include <waymark/tools/drive/logs/odometry_parts.hpp>
+#include <waymark/tools/drive/logs/parts/odometry_parts.hpp>
 #include <waymark/tools/drive/nodes/timeline.hpp>
 
 namespace waymark::drive {

@@ -10,6 +10,7 @@
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/formats/logs/detail/can/layouts/can_layout.hpp>
 #include <waymark/formats/logs/detail/common/quantity.hpp>
+#include <waymark/formats/logs/detail/csv/composed.hpp>
 #include <waymark/formats/logs/detail/csv/csv_columns.hpp>
 #include <waymark/formats/text/iso8601.hpp>
 #include <waymark/tools/drive/description/frame_entries.hpp>
@@ -53,7 +54,8 @@ void read_columns(const YamlSection& section, const std::string& format, LogRequ
   // of a format.
   const bool of_table = format == "csv" || format == "auto" || formats::is_can_format(format);
   const bool open = request.stream == StreamKind::sensor || !of_table;
-  std::vector<formats::Quantity> known = formats::quantities(request);
+  std::vector<formats::Quantity> known =
+      formats::is_can_format(format) ? formats::quantities(request) : formats::table_quantities(request);
   const YamlSection columns =
       open ? *section.free_section("columns")
            : YamlSection(section.node("columns"), "columns", section.file(), formats::names_of(known));

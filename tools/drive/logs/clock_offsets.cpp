@@ -52,7 +52,11 @@ std::vector<OdometrySample> without_delays(const std::vector<OdometrySample>& od
   for (const OdometrySample& sample : odometry) {
     const auto v = value_at(speed, sample.stamp.later(speed_delay_s - common), kAnyGap);
     const auto w = value_at(yaw_rate, sample.stamp.later(yaw_rate_delay_s - common), kAnyGap);
-    if (v && w) result.push_back({sample.stamp.later(-common), *v, *w});
+    if (!v || !w) continue;
+    OdometrySample& moved = result.emplace_back(sample);
+    moved.stamp = sample.stamp.later(-common);
+    moved.speed_mps = *v;
+    moved.yaw_rate_radps = *w;
   }
   return result;
 }

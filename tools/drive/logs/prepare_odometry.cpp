@@ -12,6 +12,7 @@
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/channels.hpp>
+#include <waymark/formats/logs/detail/csv/composed.hpp>
 #include <waymark/tools/drive/logs/clock_offsets.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
@@ -24,7 +25,7 @@ namespace {
 std::set<std::string, std::less<>> channels_by_default(const LogRequest& request) {
   std::set<std::string, std::less<>> unstated;
   for (const SensorColumn& channel : formats::odometry_channels())
-    if (!request.columns.contains(channel.name)) unstated.insert(channel.name);
+    if (!formats::names_columns_of(request, channel.name)) unstated.insert(channel.name);
   if (unstated.size() == formats::odometry_channels().size()) unstated.clear();
   return unstated;
 }

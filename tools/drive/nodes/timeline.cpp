@@ -129,6 +129,8 @@ Interval motion_between(const OdometrySample& left, const OdometrySample& right,
   tell_integration_error({before != nullptr ? bend_at(*before, left, right, gap_s) : none,
                           after != nullptr ? bend_at(left, right, *after, gap_s) : none},
                          grid_scale, twist);
+  const double turn_variance = 0.5 * (left.turn_variance_per_s + right.turn_variance_per_s) * twist.dt_s;
+  twist.turn_sigma_rad = std::hypot(twist.turn_sigma_rad, std::sqrt(turn_variance));
   return twist;
 }
 

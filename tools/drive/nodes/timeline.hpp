@@ -51,7 +51,8 @@ struct Timeline {
 /// How far the integrals may be off is told by how much speed and yaw rate bend at the samples. If
 /// acceleration and angular acceleration wander (white jerk of density s), a second difference over dt has
 /// the variance 2/3 s dt^3, and the error of the trapezoid s dt^5 / 120. So the variance of an integral
-/// is (second difference times dt)^2 / 80, the mean of those at both ends.
+/// is (second difference times dt)^2 / 80, the mean of those at both ends. The errors that the readings have
+/// themselves (OdometrySample::turn_variance_per_s) come on top.
 /// @param grid_scale grid metres per metre on the ground
 /// @param gap_s a longer interval is bridged
 /// @param before, after the samples around them; null: there is none, or it is not known yet

@@ -29,6 +29,7 @@ std::set<std::string> channels_of(const LogInspection& log) {
     for (const auto& [quantity, column] : proposed_columns(log, StreamKind::odometry))
       channels.insert(quantity);
     channels.erase("time");
+    channels.erase("time_fraction");
   } else if (log.odometry) {
     for (const ChannelSummary& channel : log.odometry->channels) channels.insert(channel.name);
   }
@@ -71,7 +72,7 @@ Names speed_channels(const std::set<std::string>& channels) {
                            Names{"wheel_speed_front_left", "wheel_speed_front_right"},
                            Names{"wheel_ticks_rear_left", "wheel_ticks_rear_right"},
                            Names{"wheel_ticks_front_left", "wheel_ticks_front_right"}, Names{"wheel_ticks"},
-                           Names{"distance"}}) {
+                           Names{"distance"}, Names{"velocity_east", "velocity_north"}}) {
     if (!has_all(channels, way)) continue;
     Names taken = way;
     if (channels.contains("reverse")) taken.emplace_back("reverse");
@@ -89,9 +90,9 @@ Names yaw_rate_channels(const std::set<std::string>& channels) {
   if (taken.size() == 3 && has_all(channels, gravity))
     taken.insert(taken.end(), gravity.begin(), gravity.end());
   if (!taken.empty()) return taken;
-  for (const Names& way :
-       {Names{"wheel_speed_rear_left", "wheel_speed_rear_right"},
-        Names{"wheel_ticks_rear_left", "wheel_ticks_rear_right"}, Names{"steering_angle"}}) {
+  for (const Names& way : {Names{"wheel_speed_rear_left", "wheel_speed_rear_right"},
+                           Names{"wheel_ticks_rear_left", "wheel_ticks_rear_right"}, Names{"steering_angle"},
+                           Names{"heading"}}) {
     if (has_all(channels, way)) return way;
   }
   return {};

@@ -9,7 +9,7 @@
 
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/formats/logs/channels.hpp>
-#include <waymark/formats/logs/detail/common/quantity.hpp>
+#include <waymark/formats/logs/detail/csv/composed.hpp>
 #include <waymark/tools/inspection/log_clock.hpp>
 #include <waymark/tools/inspection/proposal/drive_proposal.hpp>
 
@@ -56,10 +56,10 @@ std::vector<formats::Quantity> quantities_of(StreamKind stream) {
     request.readings = formats::odometry_channels();
     return request;
   }();
-  if (stream == StreamKind::odometry) return formats::quantities(kOdometry);
+  if (stream == StreamKind::odometry) return formats::table_quantities(kOdometry);
   LogRequest request;
   request.stream = stream;
-  return formats::quantities(request);
+  return formats::table_quantities(request);
 }
 
 std::vector<std::string> quantity_names(StreamKind stream) {
@@ -181,11 +181,13 @@ class Writer {
     const bool own_unit = known == nullptr || how.unit.empty() || how.unit == known->units.front().name;
     const bool own_sense = known == nullptr || how.convention.empty() || known->conventions.empty() ||
                            how.convention == known->conventions.front().name;
-    std::string value = scalar(from.name);
-    if (!own_unit || !own_sense) {
+    std::string value = scalar(reference_of(from));
+    if (!own_unit || !own_sense || how.scale != 1 || how.missing) {
       value = "{column: " + value;
       if (!own_unit) value += ", unit: " + scalar(how.unit);
       if (!own_sense) value += ", convention: " + how.convention;
+      if (how.scale != 1) value += fmt::format(", scale: {:g}", how.scale);
+      if (how.missing) value += fmt::format(", missing: {:g}", *how.missing);
       value += "}";
     }
     line(indent + quantity + ": " + value, checks_of(quantity, from, log, known));
@@ -197,9 +199,9 @@ class Writer {
     const auto add = [&text](const std::string& what) { text += (text.empty() ? "CHECK: " : "; ") + what; };
     if (!from.proposal.remark.empty()) add(from.proposal.remark);
     const bool has_unit = known != nullptr && known->units.size() > 1;
-    const bool position = quantity == "latitude" || quantity == "longitude";
-    if (has_unit && !position && !from.proposal.unit_known && from.proposal.unit.empty() &&
-        quantity != "time" && quantity != "quality" && quantity != "date")
+    const bool position = quantity == "latitude" || quantity == "longitude" || quantity.starts_with("ecef_");
+    if (has_unit && from.proposal.scale == 1 && !position && !from.proposal.unit_known &&
+        from.proposal.unit.empty() && quantity != "time" && quantity != "quality" && quantity != "date")
       add(fmt::format("no unit is named; {} is assumed", known->units.front().name));
     const std::vector<ColumnSummary>& all = log.table ? log.table->columns : log.can->signals;
     for (const ColumnSummary& other : all) {
@@ -239,6 +241,7 @@ class Writer {
       for (const std::string& quantity : quantity_names(stream)) {  // in their own order
         const auto from = columns.find(quantity);
         const bool wanted = only.empty() || quantity == "time" || quantity == "date" ||
+                            quantity == "time_fraction" ||
                             std::find(only.begin(), only.end(), quantity) != only.end();
         if (from != columns.end() && wanted) column(quantity, *from->second, log, stream, indent + "  ");
       }
@@ -257,11 +260,29 @@ class Writer {
     for (std::size_t i = 0; i < proposal_.odometry.size(); ++i)
       log_lines(logs_[proposal_.odometry[i]], StreamKind::odometry, proposal_.in_parts ? "      " : "  ",
                 proposal_.in_parts, proposal_.channels[i]);
+    if (!proposal_.has_yaw_rate && proposal_.has_speed) course_of_receiver();
     if (!proposal_.has_speed || !proposal_.has_yaw_rate)
       line("    # - file: FILL_IN.csv", fmt::format("CHECK: no log with a {} was found; a drive needs one",
                                                     proposal_.has_speed ? "yaw rate" : "speed"));
     vehicle();
     line("  # speed_delay: 0", "`waymark sync` estimates it, and yaw_rate_delay");
+  }
+
+  /// Writes the course of a receiver in comments, as the last source of turns there is.
+  void course_of_receiver() {
+    for (const std::size_t i : proposal_.gnss) {
+      const auto columns = proposed_columns(logs_[i], StreamKind::gnss);
+      const auto course = columns.find("course");
+      if (!logs_[i].table || course == columns.end()) continue;
+      const std::string& unit = course->second->proposal.unit;
+      line(
+          "    # the last resort is the receiver's course: it is known only while driving, and errs with the fixes");
+      line(fmt::format(
+          "    # - {{file: {}, columns: {{time: {}, course: {{column: {}, unit: {}, convention: cw_from_north}}}}}}",
+          scalar(relative(logs_[i].path)), scalar(reference_of(*columns.at("time"))),
+          scalar(reference_of(*course->second)), unit.empty() ? "deg" : unit));
+      return;
+    }
   }
 
   /// Writes further sources in comments: only the user knows whether a log is another sensor or a copy.

@@ -45,6 +45,11 @@ constexpr std::array kKnown{
         "sigma_north",
         "position covariance4|position covariance 4|latitude sigma|pos north stdev|sdn|sd n|sd north|std n|std north|sigma n|sigma north|sigma lat|std lat|lat std|lat sigma"},
     Known{"covariance_en_signed_root", "sdne|sdne signed root|position covariance1|position covariance 1"},
+    Known{"velocity_east",
+          "velocity east|vel east|east velocity|east vel|v east|speed east|ve|v e|vel e|velocity e|evel"},
+    Known{
+        "velocity_north",
+        "velocity north|vel north|north velocity|north vel|v north|speed north|vn|v n|vel n|velocity n|nvel"},
     Known{"speed_accuracy", "speed acc|speed accuracy|s acc|sacc|speed sigma|eps"},
     Known{"course_accuracy",
           "heading acc|heading accuracy|course acc|course accuracy|head acc|epd|track accuracy"},
@@ -95,7 +100,7 @@ constexpr std::array kWheels{Known{"front_left", "fl|lf|front left|left front|vl
 constexpr std::array kInertial{
     Known{
         "gyro",
-        "gyro|gyr|gyroscope|angular rate|angle rate|angular velocity|angular vel|angvel|angularvelocity|rate|omega|w|ang rate"},
+        "gyro|gyr|gyroscope|rate of rotation|rotation rate|angular rate|angle rate|angular velocity|angular vel|angvel|angularvelocity|rate|omega|w|ang rate"},
     Known{"acceleration", "acceleration|accel|acc|a|accelerometer|linear acceleration|specific force"}};
 
 std::string joined_words(std::span<const std::string> words) {
@@ -134,7 +139,8 @@ std::string_view dimension_of(std::string_view quantity) {
     return "";
   if (quantity.starts_with("acceleration")) return "acceleration";
   if (quantity == "yaw_rate" || quantity.starts_with("gyro")) return "rate";
-  if (quantity.starts_with("wheel_speed") || quantity == "speed" || quantity == "speed_accuracy")
+  if (quantity.starts_with("wheel_speed") || quantity.starts_with("velocity_") || quantity == "speed" ||
+      quantity == "speed_accuracy")
     return "speed";
   if (quantity.starts_with("course") || quantity == "heading" || quantity == "latitude" ||
       quantity == "longitude" || quantity == "steering_angle")
@@ -151,7 +157,7 @@ std::string part_of(std::span<const std::string> words) {
     });
   };
   const bool ticks = any_of({"ticks", "tick", "counts", "count", "pulses", "encoder"});
-  const bool speeds = any_of({"speed", "speeds", "spd", "v", "wheelspeed", "ws", "whl", "wheelspd"});
+  const bool speeds = any_of({"speed", "speeds", "spd", "v", "wheelspeed", "ws", "whl", "wheelspd", "rpm"});
   for (const Known& wheel : kWheels) {
     for (std::size_t first = 0; first < words.size(); ++first) {
       for (const std::size_t length : {3U, 2U, 1U}) {
@@ -171,6 +177,10 @@ std::string part_of(std::span<const std::string> words) {
           return std::string(sensor.quantity) + "_" + axis;
       }
     }
+    const bool begins_with_axis = words.size() > 1 && (words[0] == "x" || words[0] == "y" || words[0] == "z");
+    for (std::size_t length = 2; begins_with_axis && length <= 3 && length < words.size(); ++length)
+      if (has_name(sensor.names, joined_words(words.subspan(1, length))))
+        return std::string(sensor.quantity) + "_" + words[0];
     if (words.size() >= 1 && words[0].size() == 2 &&
         (words[0][1] == 'x' || words[0][1] == 'y' || words[0][1] == 'z'))
       if (((words[0][0] == 'w' || words[0][0] == 'g') && sensor.quantity == "gyro") ||
@@ -226,6 +236,38 @@ void read_sense(std::span<const std::string> words, ColumnProposal& proposal) {
   if (clockwise && has("north")) proposal.convention = "cw_from_north";
 }
 
+/// A wheel in rad/s or revolutions per minute turns by its radius.
+void read_scale(std::span<const std::string> words, ColumnProposal& proposal) {
+  constexpr double kRadius_m = 0.3;
+  if (!proposal.quantity.starts_with("wheel_speed") || proposal.unit_known) return;
+  const auto names = [&](std::string_view unit) {
+    return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+      return word == unit || formats::known_unit(word) == unit;
+    });
+  };
+  if (names("rad/s")) {
+    proposal.scale = kRadius_m;
+    proposal.remark = "rad/s of a wheel: the scale is its radius in m, about 0.3";
+  } else if (names("rpm")) {
+    proposal.scale = 0.0314;  // 2 pi / 60 of 0.3 m
+    proposal.remark =
+        "revolutions per minute of a wheel: the scale is 0.10472 times its radius in m, about 0.3";
+  }
+}
+
+/// Earth-centred coordinates, "ecef_x" or "WlsPositionXEcefMeters"; but not those of satellites, and no velocity.
+std::string ecef_of(std::span<const std::string> words) {
+  const auto has = [&](std::string_view word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  constexpr std::array<std::string_view, 11> kOthers{
+      "sv", "sat", "satellite", "velocity", "vel", "v", "sigma", "accuracy", "std", "cov", "acceleration"};
+  if (!has("ecef") || std::any_of(kOthers.begin(), kOthers.end(), has)) return {};
+  for (const char* axis : {"x", "y", "z"})
+    if (has(axis)) return std::string("ecef_") + axis;
+  return {};
+}
+
 bool has_date(std::span<const std::string> words) {
   return std::any_of(words.begin(), words.end(),
                      [](const std::string& word) { return word == "date" || word == "datum"; });
@@ -272,6 +314,8 @@ bool names_length(std::span<const std::string> words) {
 /// Reads the words of a name.
 ColumnProposal proposal_of(std::span<const std::string> words) {
   ColumnProposal proposal;
+  proposal.quantity = ecef_of(words);
+  if (!proposal.quantity.empty()) return proposal;
   proposal.quantity = part_of(words);
   std::size_t used = words.size();
   if (proposal.quantity.empty()) proposal.quantity = beginning_of(words, used);
@@ -290,6 +334,7 @@ ColumnProposal proposal_of(std::span<const std::string> words) {
   if (is_coordinate(proposal.quantity) && names_length(rest)) return {};
   read_dimension(rest, proposal);
   read_unit(rest.empty() ? words : rest, proposal);
+  read_scale(words, proposal);
   read_sense(words, proposal);
   read_code(words, proposal);
   const auto odd = std::find_if_not(rest.begin(), rest.end(), understood);

@@ -1,6 +1,7 @@
 /// Derives the quantity of a column or signal from its name.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,11 +10,13 @@ namespace waymark::inspection {
 
 /// The proposal for a column.
 struct ColumnProposal {
-  std::string quantity;     ///< as in formats/logs/README.md; empty: none
-  std::string unit;         ///< empty: the default of the quantity
-  std::string convention;   ///< empty: the default of the quantity
-  bool unit_known = false;  ///< known from the name; else assumed
-  std::string remark;       ///< why the user should check it; empty: the name is clear
+  std::string quantity;             ///< as in formats/logs/README.md; empty: none
+  std::string unit;                 ///< empty: the default of the quantity
+  std::string convention;           ///< empty: the default of the quantity
+  bool unit_known = false;          ///< known from the name; else assumed
+  std::string remark;               ///< why the user should check it; empty: the name is clear
+  double scale = 1;                 ///< as ColumnRequest::scale
+  std::optional<double> missing{};  ///< as ColumnRequest::missing
 };
 
 /// Returns the words of a name in small letters: "gyro_x_degps", "WheelSpeedFL", "speed [km/h]"

@@ -205,14 +205,10 @@ void remark_on_metres(std::vector<ColumnSummary>& columns) {
       east->name, north->name);
 }
 
-void keep_as_fractions(ColumnSummary& fractions, ColumnSummary& seconds) {
-  fractions.proposal = {};
-  seconds.proposal.remark =
-      fmt::format("whole seconds; their fractions are in '{}', which is not read", fractions.name);
-}
-
-/// Seconds whose fractions are in a column of their own ("header.stamp.secs", "header.stamp.nsecs") are whole ones.
-void remark_on_whole_seconds(std::vector<ColumnSummary>& columns) {
+/// Finds seconds whose fractions are in a column of their own: "header.stamp.secs", "header.stamp.nsecs".
+/// @param found takes both, for each of them
+template <typename Found>
+void find_fractions(std::vector<ColumnSummary>& columns, Found found) {
   const auto words_before_last = [](const ColumnSummary& column,
                                     std::initializer_list<std::string_view> lasts) {
     std::vector<std::string> words = words_of(column.name);
@@ -224,8 +220,7 @@ void remark_on_whole_seconds(std::vector<ColumnSummary>& columns) {
     const std::vector<std::string> name = words_before_last(seconds, {"sec", "secs"});
     if (name.empty() || seconds.proposal.quantity != "time") continue;
     for (ColumnSummary& fractions : columns)
-      if (words_before_last(fractions, {"nsec", "nsecs", "nanosec"}) == name)
-        keep_as_fractions(fractions, seconds);
+      if (words_before_last(fractions, {"nsec", "nsecs", "nanosec"}) == name) found(seconds, fractions);
   }
 }
 
@@ -253,7 +248,10 @@ bool is_of_receiver(const std::string& signal) {
 }
 
 void keep_one_each(std::vector<ColumnSummary>& columns, bool of_bus) {
-  remark_on_whole_seconds(columns);
+  find_fractions(columns, [](ColumnSummary& seconds, ColumnSummary& fractions) {
+    seconds.proposal.remark = fmt::format("whole seconds, with their fractions in '{}'", fractions.name);
+    fractions.proposal = {};
+  });
   const auto better = [](const ColumnProposal& a, const ColumnProposal& b) {
     if (a.remark.empty() != b.remark.empty()) return a.remark.empty();
     return names_unit(a) && !names_unit(b);
@@ -272,6 +270,9 @@ void keep_one_each(std::vector<ColumnSummary>& columns, bool of_bus) {
       give_way(column, *first);
     }
   }
+  find_fractions(columns, [](ColumnSummary&, ColumnSummary& fractions) {
+    fractions.proposal = {"time_fraction", "ns", "", true, ""};
+  });
 }
 
 void TableSurvey::take_line(std::string_view line, std::size_t number) {
@@ -281,7 +282,38 @@ void TableSurvey::take_line(std::string_view line, std::size_t number) {
     if (!begun_) comment_ = content.substr(1);
     return;
   }
-  if (!begun_) return begin(line);
+  if (begun_) return take_row(line, number);
+  if (const auto stated = waiting_.empty() ? formats::stated_separator(line) : std::nullopt) {
+    stated_separator_ = *stated;
+    return;
+  }
+  waiting_.emplace_back(line);
+  numbers_.push_back(number);
+  comments_.push_back(comment_);
+  const std::optional<formats::TableStart> start = formats::table_start(waiting_, stated_separator_);
+  if (start || waiting_.size() >= formats::kMostLinesAbove)
+    begin_waiting(start.value_or(formats::TableStart{}));
+}
+
+void TableSurvey::end() {
+  if (!begun_ && !waiting_.empty()) begin_waiting({});
+}
+
+void TableSurvey::begin_waiting(const formats::TableStart& start) {
+  comment_ = comments_[start.header];
+  begin(waiting_[start.header]);
+  std::size_t row = start.header + 1;
+  // Of the lines between a header and its values, one may hold units.
+  for (; row < start.first_row && row < waiting_.size(); ++row)
+    if (formats::split_fields(waiting_[row], summary_.separator, fields_) && fields_.size() == width_ &&
+        formats::is_unit_row(fields_, summary_.separator) && std::exchange(may_have_units_, false))
+      for (std::size_t i = 0; i < columns_.size(); ++i)
+        columns_[i].seen.unit = formats::unit_in_row(fields_[i]);
+  for (; row < waiting_.size(); ++row) take_row(waiting_[row], numbers_[row]);
+  waiting_.clear();
+}
+
+void TableSurvey::take_row(std::string_view line, std::size_t number) {
   const bool whole = formats::split_fields(line, summary_.separator, fields_) && fields_.size() == width_;
   if (std::exchange(may_have_units_, false) && whole && formats::is_unit_row(fields_, summary_.separator)) {
     for (std::size_t i = 0; i < columns_.size(); ++i)
@@ -311,7 +343,7 @@ bool TableSurvey::holds_values() const {
 
 void TableSurvey::begin(std::string_view line) {
   begun_ = true;
-  summary_.separator = formats::separator_of(line);
+  summary_.separator = stated_separator_ != 0 ? stated_separator_ : formats::separator_of(line);
   if (!formats::split_fields(line, summary_.separator, fields_)) return;
   width_ = fields_.size();
   columns_.resize(std::min(width_, kMostColumns));
@@ -326,8 +358,10 @@ void TableSurvey::begin(std::string_view line) {
   } else {
     summary_.first_line = comment_;
   }
-  for (std::size_t i = 0; i < columns_.size(); ++i)
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
     columns_[i].seen.name = names[i].empty() ? std::to_string(i + 1) : std::string(names[i]);
+    if (std::count(names.begin(), names.end(), names[i]) > 1) columns_[i].seen.number = std::to_string(i + 1);
+  }
   std::size_t times = 0;
   if (!summary_.has_header) columns_.front().is_time = true;
   for (Column& column : columns_) {
@@ -355,6 +389,13 @@ void TableSurvey::take_field(Column& column, std::string_view field) {
     }
     value = *number;
     column.seen.range.add(value);
+    const auto mark = std::find(kMarks.begin(), kMarks.end(), value);
+    if (mark != kMarks.end()) {
+      ++column.marks[static_cast<std::size_t>(mark - kMarks.begin())];
+    } else {
+      column.others.add(value);
+      column.others_have_fractions = column.others_have_fractions || value != std::floor(value);
+    }
   } else {
     ++column.seen.words;
     column.forms = forms_of(field, column.forms);
@@ -364,6 +405,34 @@ void TableSurvey::take_field(Column& column, std::string_view field) {
   if (column.seen.values > 0 && column.is_time && value > column.last) column.steps.add(value - column.last);
   column.last = value;
   ++column.seen.values;
+}
+
+/// A number that means "not known" comes several times and lies far from all others: it is taken out of the range.
+/// -1 is one where no other number is negative and others have fractions, as the reader takes it.
+void TableSurvey::find_mark(const Column& column, ColumnSummary& seen) {
+  constexpr std::size_t kFewest = 3;
+  constexpr double kFar = 2;
+  static constexpr std::array<std::string_view, 9> kWithout{"time",    "date",        "gnss_time",
+                                                            "valid",   "quality",     "satellites",
+                                                            "reverse", "wheel_ticks", "time_fraction"};
+  const std::string& quantity = seen.proposal.quantity;
+  if (quantity.empty() || column.others.count == 0 || quantity.starts_with("wheel_ticks") ||
+      std::find(kWithout.begin(), kWithout.end(), quantity) != kWithout.end())
+    return;
+  const double largest = std::max(std::abs(column.others.smallest), std::abs(column.others.largest));
+  std::optional<double> found;
+  for (std::size_t i = 0; i < kMarks.size(); ++i) {
+    if (column.marks[i] == 0) continue;
+    const bool is_mark = kMarks[i] == -1 ? column.others.smallest >= 0 && column.others_have_fractions
+                                         : std::abs(kMarks[i]) > kFar * largest;
+    if (found || !is_mark || column.marks[i] < kFewest) return;
+    found = kMarks[i];
+  }
+  if (!found) return;
+  seen.proposal.missing = found;
+  seen.range = column.others;
+  seen.proposal.remark +=
+      fmt::format("{}{:g} is taken for 'not known'", seen.proposal.remark.empty() ? "" : "; ", *found);
 }
 
 /// Returns a column with its proposal.
@@ -381,6 +450,7 @@ ColumnSummary TableSurvey::summary_of(const Column& column) const {
   } else if (seen.range.count == 0) {
     seen.proposal = {};  // nothing: there is no quantity
   }
+  find_mark(column, seen);
   check_range(seen, step);
   if (seen.proposal.quantity == "time" && step > 0)
     seen.rate_hz = 1 / (step * seconds_of(seen.proposal.unit));

@@ -15,6 +15,12 @@ bool needs_frame(const LogRequest& request) {
                      [](const SensorColumn& column) { return !column.sense.empty(); });
 }
 
+drive::ChosenReader reader_for_live(const drive::LogConfig& log, const TypeRegistry& registry) {
+  drive::ChosenReader chosen = drive::choose_reader(log, registry);
+  chosen.request.is_live = true;
+  return chosen;
+}
+
 /// A drive may be without a fix for hours.
 void append(const SensorTable& more, SensorTable& rows) {
   constexpr std::size_t kMost = 100'000;
@@ -34,7 +40,7 @@ Channel::Channel(Role role, const drive::LogConfig& log, std::size_t index, Time
       scale_(scale),
       parts_(parts),
       odometry_(odometry),
-      chosen_(drive::choose_reader(log, registry)),
+      chosen_(reader_for_live(log, registry)),
       decoder_(chosen_.type.reader->open(log.file, chosen_.request)) {}
 
 std::vector<Sample> Channel::take(std::string_view piece, const drive::Projection* projection) {

@@ -44,6 +44,7 @@ std::vector<OdometrySample> OdometryStream::take(std::size_t part, const SensorT
     drive::AssembledOdometry assembled = drive::assemble_odometry(parts_, how_, gap_s_);
     samples = std::move(assembled.samples);
     yaw_rate_from_ = assembled.yaw_rate_from;
+    how_.heading_is_course = how_.heading_is_course || assembled.heading_is_course;
     obstacle_.clear();
   } catch (const InputError& error) {
     obstacle_ = error.what();

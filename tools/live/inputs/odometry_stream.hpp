@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <waymark/core/drive/sample.hpp>
-#include <waymark/tools/drive/logs/odometry_parts.hpp>
+#include <waymark/tools/drive/logs/parts/odometry_parts.hpp>
 
 namespace waymark::live {
 

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include <waymark/tools/drive/logs/odometry_parts.hpp>
+#include <waymark/tools/drive/logs/parts/odometry_parts.hpp>
 #include <waymark/tools/live/learning/gyro_shown.hpp>
 
 namespace waymark::live {

@@ -102,6 +102,27 @@ constexpr std::array kTruth{
     kEasting,      kNorthing,
     kHeight,       Quantity{"heading", "heading_rad", false, kHeadings, kHeadingSenses, -200 * pi, 200 * pi}};
 
+// What tables give in pieces. They are never found by a default name.
+constexpr std::array kFractions{Unit{"s", 0}, Unit{"ms", -3}, Unit{"us", -6}, Unit{"ns", -9}};
+constexpr Quantity piece(std::string_view name, std::span<const Unit> units, double largest,
+                         std::span<const Convention> conventions = {}) {
+  return {name, "", false, units, conventions, -largest, largest, true};
+}
+constexpr std::array kPieces{piece("time_fraction", kFractions, kInfinity),
+                             piece("velocity_east", kSpeeds, 150),
+                             piece("velocity_north", kSpeeds, 150),
+                             piece("heading_east", kFlags, kInfinity),
+                             piece("heading_north", kFlags, kInfinity),
+                             piece("quaternion_x", kFlags, kInfinity),
+                             piece("quaternion_y", kFlags, kInfinity),
+                             piece("quaternion_z", kFlags, kInfinity),
+                             piece("quaternion_w", kFlags, kInfinity),
+                             piece("distance_step", kLengths, kInfinity),
+                             piece("heading_step", kHeadings, kInfinity, kTurns),
+                             piece("ecef_x", kLengths, 1e7),
+                             piece("ecef_y", kLengths, 1e7),
+                             piece("ecef_z", kLengths, 1e7)};
+
 // What a sensor may request: an SI unit, and the sense of an angle or rate (SensorColumn).
 struct SensorKind {
   std::string_view unit;
@@ -202,10 +223,15 @@ const Quantity* find_quantity(std::span<const Quantity> quantities, std::string_
   return find_named(quantities, name);
 }
 
+const Quantity* find_piece(std::string_view name) {
+  return find_named(std::span<const Quantity>(kPieces), name);
+}
+
 bool has_size(const Quantity& quantity) {
   constexpr std::array<std::string_view, 3> kMarks{"valid", kLatitudeSide.name, kLongitudeSide.name};
   const Unit* units = quantity.units.data();
-  return units != kTimes.data() && units != kDates.data() && units != kQualityCodes.data() &&
+  return units != kTimes.data() && units != kFractions.data() && units != kDates.data() &&
+         units != kQualityCodes.data() &&
          std::find(kMarks.begin(), kMarks.end(), quantity.name) == kMarks.end();
 }
 

@@ -55,6 +55,10 @@ inline constexpr std::string_view kIso8601 = "iso8601";
 /// Returns null for an unknown name.
 [[nodiscard]] const Quantity* find_quantity(std::span<const Quantity> quantities, std::string_view name);
 
+/// Returns a quantity of which tables compose others (csv/composed.hpp): a component of a velocity, an axis, a rotation
+/// or an Earth-centred position, a step from row to row, the fraction of a second. Null for an unknown name.
+[[nodiscard]] const Quantity* find_piece(std::string_view name);
+
 /// Tells whether the values of a quantity are numbers that have a size: no times, dates, codes or letters.
 [[nodiscard]] bool has_size(const Quantity& quantity);
 

@@ -10,7 +10,7 @@ struct UnitAlias {
   std::string_view written;  ///< in small letters
   std::string_view name;
 };
-constexpr std::array<UnitAlias, 79> kUnitAliases{{
+constexpr std::array<UnitAlias, 81> kUnitAliases{{
     {"m/s", "m/s"},
     {"mps", "m/s"},
     {"meter/sec", "m/s"},
@@ -28,6 +28,8 @@ constexpr std::array<UnitAlias, 79> kUnitAliases{{
     {"knots", "kn"},
     {"mm/s", "mm/s"},
     {"rad/s", "rad/s"},
+    {"degs", "deg/s"},
+    {"unix time", "s"},
     {"rad/sec", "rad/s"},
     {"deg/s", "deg/s"},
     {"deg/sec", "deg/s"},

@@ -18,6 +18,10 @@ struct Bindings {
         longitude_hemisphere(columns.find("longitude_hemisphere")),
         easting(columns.find("easting")),
         northing(columns.find("northing")),
+        ecef_x(columns.find("ecef_x")),
+        ecef_y(columns.find("ecef_y")),
+        ecef_z(columns.find("ecef_z")),
+        time_fraction(columns.find("time_fraction")),
         height(columns.find("height")),
         heading(columns.find("heading")),
         course(columns.find("course")),
@@ -32,6 +36,7 @@ struct Bindings {
 
   const BoundColumn *time, *date, *speed, *yaw_rate, *latitude, *longitude;
   const BoundColumn *latitude_hemisphere, *longitude_hemisphere, *easting, *northing;
+  const BoundColumn *ecef_x, *ecef_y, *ecef_z, *time_fraction;
   const BoundColumn *height, *heading;
   const BoundColumn *course, *course_accuracy, *speed_accuracy, *gnss_time, *valid;
   const BoundColumn *quality, *hdop, *satellites, *correction_age;

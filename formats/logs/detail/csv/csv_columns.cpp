@@ -1,6 +1,7 @@
 #include <waymark/formats/logs/detail/csv/csv_columns.hpp>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/formats/logs/detail/common/record_fields.hpp>
+#include <waymark/formats/logs/detail/csv/composed.hpp>
 #include <waymark/formats/logs/detail/csv/table_header.hpp>
 #include <waymark/formats/text/detail/line_scanner.hpp>
 #include <waymark/formats/text/iso8601.hpp>
@@ -70,6 +72,40 @@ std::string number_error(const Quantity& quantity, const ColumnRequest& request)
   return {};
 }
 
+/// Returns the default name of a quantity that several columns have; empty: none is.
+std::string_view name_given_twice(const Quantity& quantity, const std::vector<std::string>& names) {
+  for (const std::string_view name : {quantity.name, quantity.default_column})
+    if (!quantity.by_request && std::count(names.begin(), names.end(), name) > 1) return name;
+  return {};
+}
+
+/// Returns the place of the letter or word that makes a plain name that of a component to the east or north:
+/// "vel_east", "velnorth", "ve", "v_n"; npos: it is none.
+std::size_t component_word(std::string_view name) {
+  for (const std::string_view word : {"east", "north"})
+    if (const std::size_t at = name.find(word); at != std::string_view::npos) return at;
+  constexpr std::array<std::string_view, 4> kBegins{"v", "v_", "vel_", "velocity_"};
+  if (name.empty() || (name.back() != 'e' && name.back() != 'n')) return std::string_view::npos;
+  const bool is_component =
+      std::find(kBegins.begin(), kBegins.end(), name.substr(0, name.size() - 1)) != kBegins.end();
+  return is_component ? name.size() - 1 : std::string_view::npos;
+}
+
+/// @pre the name is that of a component
+bool names_east(std::string_view name) {
+  return name[component_word(name)] == 'e';
+}
+
+/// Returns the plain name of the component across this one; empty if it is none.
+std::optional<std::string> other_component(std::string_view name) {
+  const std::size_t at = component_word(name);
+  if (at == std::string_view::npos) return std::nullopt;
+  const bool is_letter = at + 1 == name.size();
+  const std::string_view word = is_letter ? name.substr(at) : names_east(name) ? "east" : "north";
+  const std::string_view other = is_letter ? (word == "e" ? "n" : "e") : (word == "east" ? "north" : "east");
+  return std::string(name.substr(0, at)).append(other).append(name.substr(at + word.size()));
+}
+
 bool is_default_name(const Quantity& quantity, std::string_view name) {
   return name == quantity.name || name == lower_case(quantity.default_column);
 }
@@ -114,7 +150,7 @@ std::string column_request_error(const Quantity& quantity, const ColumnRequest& 
 }
 
 CsvColumns::CsvColumns(const TableLine& first, const std::string& path, const LogRequest& request)
-    : quantities_(quantities(request)) {
+    : quantities_(table_quantities(request)) {
   check_request(path + ": ", request);
   find_header(first, path, request);
   const std::string place = fmt::format("{}:{}:1: ", path, first.number);
@@ -183,7 +219,7 @@ void CsvColumns::take_units(const std::vector<std::string_view>& row) {
   }
 }
 
-/// Keeps the quantities of one kind of position: latitude and longitude, or easting and northing.
+/// Keeps the quantities of one kind of position: latitude and longitude, easting and northing, or ECEF.
 void CsvColumns::choose_position(const LogRequest& request, const std::string& place) {
   if (find_quantity(quantities_, "easting") == nullptr) return;
   const auto states = [&](std::string_view first, std::string_view second) {
@@ -191,9 +227,13 @@ void CsvColumns::choose_position(const LogRequest& request, const std::string& p
   };
   const bool states_degrees = states("latitude", "longitude");
   const bool states_metres = states("easting", "northing");
-  if (states_degrees && states_metres)
+  const bool states_ecef = states("ecef_x", "ecef_y") || request.columns.contains("ecef_z");
+  if (states_degrees + states_metres + states_ecef > 1)
     throw InputError(
-        place + "columns name two kinds of position: keep latitude and longitude, or easting and northing");
+        place +
+        "columns name two kinds of position: keep latitude and longitude, easting and northing, or "
+        "ecef_x, ecef_y and ecef_z");
+  if (states_ecef) return keep_ecef();
   const bool metric = states_metres || (!states_degrees && !has_default_columns("latitude", "longitude") &&
                                         has_default_columns("easting", "northing"));
   if (metric && !request.local_origin && request.metric_frame.value_or(Frame{}).zone == 0)
@@ -207,6 +247,15 @@ void CsvColumns::choose_position(const LogRequest& request, const std::string& p
   });
   for (Quantity& quantity : quantities_)
     quantity.required = quantity.required || quantity.name == "easting" || quantity.name == "northing";
+}
+
+void CsvColumns::keep_ecef() {
+  std::erase_if(quantities_, [](const Quantity& quantity) {
+    return quantity.name.starts_with("latitude") || quantity.name.starts_with("longitude") ||
+           quantity.name == "easting" || quantity.name == "northing";
+  });
+  for (Quantity& quantity : quantities_)
+    quantity.required = quantity.required || quantity.name.starts_with("ecef_");
 }
 
 bool CsvColumns::has_default_columns(std::string_view first, std::string_view second) const {
@@ -241,13 +290,38 @@ std::optional<std::size_t> CsvColumns::field_stated(const std::string& column, s
                                did_you_mean(column, views_of(shown_names())), columns_present()));
 }
 
+/// A component of a velocity is no speed.
+/// @throws InputError if the table has the other one, too
+void CsvColumns::require_no_component(std::size_t field, const std::string& place) const {
+  if (field >= names_.size()) return;
+  const std::optional<std::string> other = other_component(plain_names_[field]);
+  const auto at = other ? std::find(plain_names_.begin(), plain_names_.end(), *other) : plain_names_.end();
+  if (at == plain_names_.end()) return;
+  const auto other_field = static_cast<std::size_t>(at - plain_names_.begin());
+  const bool is_east = names_east(plain_names_[field]);
+  throw InputError(fmt::format(
+      "{}'{}' is a component of a velocity and no speed, and the table has the other one: state 'velocity_east: {}' "
+      "and 'velocity_north: {}' in place of 'speed' (and of 'course')",
+      place, shown_name(names_[field]), shown_name(names_[is_east ? field : other_field]),
+      shown_name(names_[is_east ? other_field : field])));
+}
+
 void CsvColumns::bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place) {
   BoundColumn bound;
   bound.quantity = &quantity;
   std::optional<std::size_t> field;
   if (wanted != nullptr) {
     field = field_stated(wanted->column, quantity.name, place);
+    if (quantity.name == "speed") require_no_component(*field, place);
   } else {
+    if (const std::string_view twice =
+            quantity.required ? std::string_view() : name_given_twice(quantity, names_);
+        !twice.empty()) {
+      notes_.push_back(
+          fmt::format("{}the header has '{}' several times: none is read unless its number is named", place,
+                      shown_name(twice)));
+      return;
+    }
     field = field_by_default(quantity, place);
     if (!field && quantity.required)
       throw InputError(
@@ -274,7 +348,7 @@ void CsvColumns::bind(const Quantity& quantity, const ColumnRequest* wanted, con
   bound.factor = convention.sign * unit.factor * scale;
   bound.offset = convention.offset;
   bound.missing = how.missing;
-  if (quantity.name == "time" || quantity.name == "gnss_time")
+  if (quantity.name == "time" || quantity.name == "gnss_time" || quantity.name == "time_fraction")
     bound.time_power = static_cast<int>(unit.factor);
   columns_.push_back(bound);
 }

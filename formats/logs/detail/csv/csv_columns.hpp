@@ -52,6 +52,8 @@ class CsvColumns {
   void take_names(const std::vector<std::string_view>& names);
   void take_units(const std::vector<std::string_view>& row);
   void choose_position(const LogRequest& request, const std::string& place);
+  void keep_ecef();
+  void require_no_component(std::size_t field, const std::string& place) const;
   void bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place);
   void require_one(std::string_view name, std::string_view use, const std::string& place) const;
   [[nodiscard]] std::optional<std::size_t> field_stated(const std::string& column, std::string_view use,

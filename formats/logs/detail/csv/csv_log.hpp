@@ -26,6 +26,8 @@ namespace waymark::formats {
 /// Positions are latitude and longitude, or easting and northing in `metric_frame`; figures of
 /// accuracy are then along the grid's axes. A line with neither coordinate is without a fix.
 ///
+/// Quantities may be given in pieces (composed.hpp), and the table may begin below other lines (table_start.hpp).
+///
 /// Corrupt lines are counted and skipped. A line is corrupt if it has another number of fields than
 /// the header, a missing or garbled number, a value outside its range (latitude, speed above 150
 /// m/s, yaw rate above 20 rad/s, ...) or a covariance that is not positive definite. `valid` = 0

@@ -13,6 +13,7 @@
 #include <waymark/formats/logs/detail/common/record_fields.hpp>
 #include <waymark/formats/logs/detail/csv/csv_table.hpp>
 #include <waymark/formats/logs/detail/csv/table_angle.hpp>
+#include <waymark/formats/logs/detail/place/geocentric.hpp>
 #include <waymark/formats/logs/detail/place/local_plane.hpp>
 #include <waymark/formats/text/stamp_text.hpp>
 
@@ -46,6 +47,9 @@ CsvRecords::CsvRecords(const CsvColumns& columns, const std::string& path, LogRe
       data_(data),
       positions_(path, request_, nullptr),
       wraps_(bound_.time),
+      speed_("speed", request_.stream, columns, path),
+      course_("course", request_.stream, columns, path),
+      heading_("heading", request_.stream, columns, path),
       filtered_(columns.filtered()),
       unknown_speed_(request_.stream == StreamKind::sensor ? nullptr : bound_.speed),
       unknown_course_(request_.stream == StreamKind::sensor ? nullptr : bound_.course) {
@@ -57,7 +61,10 @@ CsvRecords::CsvRecords(const CsvColumns& columns, const std::string& path, LogRe
     accuracy_north_ = columns.find(accuracy_.north);
     covariance_root_ = columns.find(accuracy_.covariance_root);
   }
-  for (const SensorColumn& column : request_.readings) readings_.push_back(columns.find(column.name));
+  for (const SensorColumn& column : request_.readings) {
+    readings_.push_back(columns.find(column.name));
+    composed_.emplace_back(column.name, request_.stream, columns, path);
+  }
   data.readings.columns = request_.readings.size();
 }
 
@@ -66,15 +73,14 @@ void CsvRecords::read_line(std::string_view line, std::size_t number) {
   line_ = line;
   complaint_ = {};
   number_ = number;
-  if (check_fields()) {
-    wraps_.see(fields_[bound_.time->field]);
-    if (!is_wanted()) {
-      --data_.records;
-      ++unwanted_;
-      return;
-    }
-    read_sample();
+  const bool whole = check_fields();
+  if (whole) wraps_.see(fields_[bound_.time->field]);
+  if (!is_wanted()) {
+    --data_.records;
+    ++unwanted_;
+    return;
   }
+  if (whole) read_sample();
   if (complaint_.column != 0) add_corrupt(data_, path_, number_, complaint_.column, complaint_.what);
 }
 
@@ -92,7 +98,9 @@ bool CsvRecords::check_fields() {
 }
 
 bool CsvRecords::is_wanted() const {
-  return !filtered_ || (fields_[*filtered_] == request_.where->value) == request_.where->equal;
+  // A row of another kind may have another length.
+  return !filtered_ || *filtered_ >= fields_.size() ||
+         (fields_[*filtered_] == request_.where->value) == request_.where->equal;
 }
 
 void CsvRecords::read_sample() {
@@ -102,7 +110,7 @@ void CsvRecords::read_sample() {
   if (request_.stream == StreamKind::sensor || !request_.readings.empty()) return read_readings(*at);
   if (request_.stream == StreamKind::odometry) {
     const OdometrySample sample{*at, number(bound_.speed, true), number(bound_.yaw_rate, true)};
-    if (complaint_.column == 0) data_.odometry.push_back(sample);
+    if (complaint_.column == 0 && !std::isnan(sample.speed_mps)) data_.odometry.push_back(sample);
     return;
   }
   request_.stream == StreamKind::truth ? read_truth(*at) : read_fix(*at);
@@ -111,9 +119,9 @@ void CsvRecords::read_sample() {
 void CsvRecords::read_truth(Stamp at) {
   const std::optional<Position> place = position();
   if (!place) return;
-  const double height = number(bound_.height, false);
+  const double height = height_at(*place);
   const GeodeticTruth truth{at, place->latitude_deg, place->longitude_deg, height,
-                            optional_number(bound_.heading)};
+                            optional_value(bound_.heading, heading_)};
   if (complaint_.column == 0) data_.truth.push_back(truth);
 }
 
@@ -124,12 +132,12 @@ void CsvRecords::read_fix(Stamp at) {
   fix.stamp = at;
   fix.latitude_deg = place->latitude_deg;
   fix.longitude_deg = place->longitude_deg;
-  fix.height_m = number(bound_.height, false);
+  fix.height_m = height_at(*place);
   if (!read_details(fix)) return;
   set_covariance(fix, place->axes);
-  fix.course_rad = optional_number(bound_.course);
+  fix.course_rad = optional_value(bound_.course, course_);
   fix.course_sigma_rad = optional_sigma(bound_.course_accuracy);
-  fix.speed_mps = optional_number(bound_.speed);
+  fix.speed_mps = optional_value(bound_.speed, speed_);
   fix.speed_sigma_mps = optional_sigma(bound_.speed_accuracy);
   fix.line = number_;
   const std::optional<Stamp> told = bound_.gnss_time ? instant(*bound_.gnss_time) : std::nullopt;
@@ -192,7 +200,9 @@ void CsvRecords::finish() {
 void CsvRecords::read_readings(Stamp at) {
   row_.clear();
   for (std::size_t i = 0; i < request_.readings.size(); ++i)
-    row_.push_back(number(readings_[i], request_.readings[i].required));
+    row_.push_back(readings_[i] == nullptr && composed_[i]
+                       ? composed(composed_[i])
+                       : number(readings_[i], request_.readings[i].required));
   if (complaint_.column != 0) return;
   data_.readings.stamps.push_back(at);
   data_.readings.values.insert(data_.readings.values.end(), row_.begin(), row_.end());
@@ -265,6 +275,7 @@ std::optional<Stamp> CsvRecords::stamp() {
     complain(*bound_.time, fmt::format("{} is no second of a week", quote_field(field)));
     return std::nullopt;
   }
+  if (bound_.time_fraction != nullptr && !add_fraction(*stamp)) return std::nullopt;
   if (request_.time_scale == TimeScale::gps && bound_.date == nullptr) stamp = weeks_.continued(*stamp);
   if (__builtin_add_overflow(stamp->nanoseconds, wraps_.added_ns(), &stamp->nanoseconds) ||
       __builtin_add_overflow(stamp->nanoseconds, offset_, &stamp->nanoseconds)) {
@@ -272,6 +283,27 @@ std::optional<Stamp> CsvRecords::stamp() {
     return std::nullopt;
   }
   return stamp;
+}
+
+/// Adds the fraction of the second that has a column of its own. @return false: it has none
+bool CsvRecords::add_fraction(Stamp& stamp) {
+  const BoundColumn& column = *bound_.time_fraction;
+  const std::string_view field = fields_[column.field];
+  const std::optional<TableInstant> told = instant_from_field(field, column.unit, column.time_power);
+  if (told && !__builtin_add_overflow(stamp.nanoseconds, told->stamp.nanoseconds, &stamp.nanoseconds))
+    return true;
+  complain(column, field.empty() ? "no value" : fmt::format("expected a number, got {}", quote_field(field)));
+  return false;
+}
+
+double CsvRecords::composed(Composed& way) {
+  return way.value([this](const BoundColumn* column) { return number(column, false); });
+}
+
+std::optional<double> CsvRecords::optional_value(const BoundColumn* column, Composed& way) {
+  if (column != nullptr || !way) return optional_number(column);
+  const double value = composed(way);
+  return std::isnan(value) ? std::nullopt : std::optional(value);
 }
 
 /// Returns the number of a field in its unit; NaN: it has none. Empty: it is none.
@@ -304,6 +336,9 @@ double CsvRecords::number(const BoundColumn* column, bool required) {
     if (required) complain(*column, "no value");
     return kNoNumber;
   }
+  if (request_.is_live &&
+      (unknown_speed_.is_mark_so_far(column, *given) || unknown_course_.is_mark_so_far(column, *given)))
+    return kNoNumber;
   unknown_speed_.see(column, *given);
   unknown_course_.see(column, *given);
   const Quantity& quantity = *column->quantity;
@@ -367,6 +402,7 @@ bool CsvRecords::has_fix() {
 
 /// Returns the position of the line. Empty: it has none, or it is corrupt.
 std::optional<CsvRecords::Position> CsvRecords::position() {
+  if (bound_.ecef_x != nullptr) return position_in_space();
   const bool metric = bound_.easting != nullptr;
   const BoundColumn* first_column = metric ? bound_.easting : bound_.latitude;
   const BoundColumn* second_column = metric ? bound_.northing : bound_.longitude;
@@ -383,6 +419,34 @@ std::optional<CsvRecords::Position> CsvRecords::position() {
   }
   if (metric) return position_on_grid(first, second);
   return Position{first, second, {}};
+}
+
+/// Returns an Earth-centred position on the ellipsoid. Some receivers write zeros where they have none.
+std::optional<CsvRecords::Position> CsvRecords::position_in_space() {
+  const Eigen::Vector3d ecef(number(bound_.ecef_x, false), number(bound_.ecef_y, false),
+                             number(bound_.ecef_z, false));
+  if (complaint_.column != 0) return std::nullopt;
+  if (ecef.array().isNaN().any() || ecef.isZero()) {
+    ++data_.without_fix;
+    return std::nullopt;
+  }
+  constexpr double kLowest = 6.3e6;
+  constexpr double kHighest = 6.5e6;
+  if (ecef.norm() < kLowest || ecef.norm() > kHighest) {
+    complain(
+        *bound_.ecef_x,
+        fmt::format(
+            "{}, {}, {} m are {:.6g} km from the centre of the Earth, and the ground is 6357 to 6384 km from it",
+            ecef.x(), ecef.y(), ecef.z(), ecef.norm() / 1000));
+    return std::nullopt;
+  }
+  const GeodeticPlace place = geodetic_from_ecef(ecef);
+  return Position{place.latitude_deg, place.longitude_deg, {}, place.height_m};
+}
+
+/// Returns the height in its own column, else that of the position.
+double CsvRecords::height_at(const Position& place) {
+  return bound_.height != nullptr ? number(bound_.height, false) : place.height_m;
 }
 
 std::optional<CsvRecords::Position> CsvRecords::position_on_grid(double easting_m, double northing_m) {

@@ -11,7 +11,9 @@
 #include <waymark/core/drive/log_reader.hpp>
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/common/position_stream.hpp>
+#include <waymark/formats/logs/detail/common/record_fields.hpp>
 #include <waymark/formats/logs/detail/common/table_accuracy.hpp>
+#include <waymark/formats/logs/detail/csv/composed.hpp>
 #include <waymark/formats/logs/detail/csv/counter_wraps.hpp>
 #include <waymark/formats/logs/detail/csv/csv_bindings.hpp>
 #include <waymark/formats/logs/detail/csv/csv_columns.hpp>
@@ -44,6 +46,7 @@ class CsvRecords {
     double latitude_deg = 0;
     double longitude_deg = 0;
     GridAxes axes{};
+    double height_m = kNoNumber;  ///< of one that has a height itself
   };
 
   bool check_fields();
@@ -65,6 +68,11 @@ class CsvRecords {
   [[nodiscard]] std::optional<double> optional_sigma(const BoundColumn* column);
   [[nodiscard]] bool has_fix();
   [[nodiscard]] std::optional<Position> position();
+  [[nodiscard]] std::optional<Position> position_in_space();
+  [[nodiscard]] double height_at(const Position& place);
+  [[nodiscard]] double composed(Composed& way);
+  [[nodiscard]] std::optional<double> optional_value(const BoundColumn* column, Composed& way);
+  [[nodiscard]] bool add_fraction(Stamp& stamp);
   [[nodiscard]] std::optional<Position> position_on_grid(double easting_m, double northing_m);
   void set_covariance(GeodeticFix& fix, const GridAxes& axes);
   void complain(const BoundColumn& column, std::string what);
@@ -73,6 +81,7 @@ class CsvRecords {
   Bindings bound_;
   /// of a sensor, in the order of LogRequest::readings; null: there is no such column
   std::vector<const BoundColumn*> readings_;
+  std::vector<Composed> composed_;  ///< of readings_ without a column of their own
   std::size_t field_count_;
   const std::string& path_;
   const LogRequest request_;
@@ -85,6 +94,7 @@ class CsvRecords {
   std::int64_t days_ = 0;                ///< midnights since its first time of day
   WeekCount weeks_;                      ///< of a log whose times may be those of a week
   CounterWraps wraps_;                   ///< of a log whose times may be a counter of 32 bits
+  Composed speed_, course_, heading_;    ///< of fixes and truth
   std::optional<std::size_t> filtered_;  ///< field that decides
   std::size_t unwanted_ = 0;
   UnknownMarks unknown_speed_, unknown_course_;

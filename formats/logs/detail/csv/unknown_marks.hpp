@@ -23,9 +23,15 @@ class UnknownMarks {
     if (number == -1) {
       ++marks_;
     } else {
+      has_others_ = true;
       others_are_negative_ = others_are_negative_ || number < 0;
       others_have_fractions_ = others_have_fractions_ || number != std::floor(number);
     }
+  }
+  /// Tells whether -1 is a mark by what was seen before it, for those who cannot wait for the end.
+  [[nodiscard]] bool is_mark_so_far(const BoundColumn* column, double number) const {
+    const bool others_allow = others_have_fractions_ || !has_others_;
+    return column == column_ && column != nullptr && number == -1 && others_allow && !others_are_negative_;
   }
   [[nodiscard]] bool found() const {
     constexpr std::size_t kFewest = 3;
@@ -41,6 +47,7 @@ class UnknownMarks {
  private:
   const BoundColumn* column_;
   std::size_t marks_ = 0;
+  bool has_others_ = false;
   bool others_are_negative_ = false;
   bool others_have_fractions_ = false;
 };

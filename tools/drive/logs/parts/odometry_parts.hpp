@@ -41,7 +41,8 @@ struct OdometryAssembly {
   double wheelbase_m = 0;
   double steering_ratio = 1;  ///< angle of the steering wheel over angle of the front wheels
   double metres_per_tick = 0;
-  double tick_range = 0;  ///< here counters restart from 0; not stated: never
+  double tick_range = 0;           ///< here counters restart from 0; not stated: never
+  bool heading_is_course = false;  ///< AssembledOdometry::heading_is_course of an earlier stretch
 };
 
 /// The channels of one log.
@@ -59,6 +60,8 @@ struct AssembledOdometry {
   std::vector<std::string> notes;     ///< the source of each quantity
   std::vector<std::string> warnings;  ///< of a yaw rate that is missing most of the time
   std::string_view yaw_rate_from;     ///< one of kYawRateSources
+  /// the heading leaps at rest, so it is used as a course (parts/direction.hpp); a warning tells it
+  bool heading_is_course = false;
 };
 
 /// Returns samples at whole multiples of the clock's period, from the later first reading to the

@@ -1,4 +1,4 @@
-#include <waymark/tools/drive/logs/odometry_parts.hpp>
+#include <waymark/tools/drive/logs/parts/odometry_parts.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,10 @@
 #include <fmt/format.h>
 #include <Eigen/Core>
 
+#include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/channels.hpp>
+#include <waymark/tools/drive/logs/parts/direction.hpp>
 #include <waymark/tools/drive/logs/time_series.hpp>
 
 namespace waymark::drive {
@@ -249,8 +251,7 @@ class Assembler {
   [[nodiscard]] std::optional<TimeSeries> yaw_rate(std::string_view source) {
     const TimeSeries* channel = find(source);
     yaw_is_turn_ = source == "heading" || source == "course";
-    if (source == "course" && channel != nullptr) return unwrapped(while_driving(*channel));
-    if (yaw_is_turn_ && channel != nullptr) return unwrapped(*channel);
+    if (yaw_is_turn_ && channel != nullptr) return direction(*channel, source == "course");
     if (source == "gyro") return gyro();
     if (source == "rear_wheels") return wheels("rear", source, true);
     if (source == "rear_ticks") return ticks("rear", source, true);
@@ -258,18 +259,21 @@ class Assembler {
     return channel == nullptr ? std::nullopt : std::optional(*channel);
   }
 
-  /// Returns the readings of a course at speeds at which it is a direction. Receivers repeat or invent one
-  /// at rest, and its jump back would look like a turn. The source is silent there.
-  [[nodiscard]] TimeSeries while_driving(const TimeSeries& course) const {
-    constexpr double kSlowest = 2;
-    TimeSeries driving;
-    for (std::size_t i = 0; i < course.stamps.size(); ++i) {
-      const std::optional<double> v = value_at(speed_, course.stamps[i], longest_silence_s(speed_, gap_s_));
-      if (!v || std::abs(*v) < kSlowest) continue;
-      driving.stamps.push_back(course.stamps[i]);
-      driving.values.push_back(course.values[i]);
+  /// Returns a heading, or a direction of motion: as stated, or as its readings at rest show.
+  [[nodiscard]] TimeSeries direction(const TimeSeries& readings, bool of_motion) {
+    if (!of_motion && how_.heading_is_course) {
+      of_motion = true;
+    } else if (const auto leaps = of_motion ? std::nullopt : leaps_at_rest(readings, speed_, gap_s_)) {
+      of_motion = result_.heading_is_course = true;
+      result_.warnings.push_back(fmt::format(
+          "odometry: the heading leaps {} times while the vehicle stands, by up to {:.0f} deg, as the course of a "
+          "receiver does: it is taken as the direction of motion; state 'course' in place of 'heading', or a source "
+          "that measures all the time by 'yaw_rate_from' (channels found: {})",
+          leaps->leaps, leaps->largest_rad / kDegree, present()));
     }
-    return driving;
+    Direction direction = of_motion ? turns_of_course(readings, speed_, gap_s_) : turns_of_heading(readings);
+    turn_variance_ = std::move(direction.turn_variance_per_s);
+    return std::move(direction.angle);
   }
 
   [[nodiscard]] std::optional<TimeSeries> gyro() {
@@ -390,6 +394,7 @@ class Assembler {
     const double yaw_gap = longest_silence_s(yaw, gap_s_);
     const SeriesIntegral way(speed_);
     const SeriesIntegral turn(yaw);
+    const SeriesIntegral turn_error(turn_variance_);
     std::int64_t t = first - first % period;
     if (t < first) t += period;
     for (; t <= last; t += period) {
@@ -402,7 +407,10 @@ class Assembler {
       const Stamp from{std::max(t - period / 2, first)};
       const Stamp to{std::min(t - period / 2 + period, last)};
       const double yaw_rate = yaw_is_turn_ ? mean_slope(yaw, from, to) : turn.mean(from, to);
-      result_.samples.push_back({{t}, way.mean(from, to), yaw_rate});
+      result_.samples.push_back({.stamp = {t},
+                                 .speed_mps = way.mean(from, to),
+                                 .yaw_rate_radps = yaw_rate,
+                                 .turn_variance_per_s = turn_error.mean(from, to)});
     }
     if (result_.samples.empty())
       throw InputError(
@@ -429,7 +437,8 @@ class Assembler {
   const OdometryAssembly& how_;
   double gap_s_;
   TimeSeries speed_;
-  bool yaw_is_turn_ = false;  ///< the source of the yaw rate is the heading
+  bool yaw_is_turn_ = false;             ///< the source of the yaw rate is a direction
+  TimeSeries turn_variance_{{{}}, {0}};  ///< rad^2/s
   AssembledOdometry result_;
 };
 
