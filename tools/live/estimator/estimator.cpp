@@ -24,6 +24,15 @@ constexpr double kRoughStart_s = 30;      // positions of single epochs are wron
 constexpr double kLooksBack = 60;         // s, for the alignment
 constexpr double kRemembered_s = 1800;    // of the drive, to learn from
 
+std::string words_for(const ClockJump& jump) {
+  const double jump_s = seconds_between(jump.from, jump.to);
+  if (!jump.to_fixes) return fmt::format("the clock of the odometry has jumped by {:.3f} s", jump_s);
+  return fmt::format(
+      "the stamps of the odometry and of the fixes are {:.3f} s apart: those of the odometry are moved to the fixes, "
+      "by the order of arrival",
+      jump_s);
+}
+
 }  // namespace
 
 Estimator::Estimator(drive::DriveDescription description, const drive::FusionSettings& settings,
@@ -172,14 +181,19 @@ void Estimator::finish() {
 }
 
 void Estimator::work() {
+  if (const std::optional<double> step_s = intake_.step())
+    say("clock", description_.odometry.front().name,
+        fmt::format(
+            "its clock has stepped by {:.3f} s, and that of the fixes has not: its stamps are moved back by "
+            "that from here on",
+            *step_s));
   if (const std::optional<ClockJump> jump = intake_.jump()) {
-    reset("jump", fmt::format("the clock of the odometry has jumped by {:.3f} s",
-                              seconds_between(jump->from, jump->to)));
+    reset("jump", words_for(*jump));
     forget_motion();
     // After a pause the drive so far is still one drive. After another step of the clock it is not.
     constexpr double kPause_s = 60;
     const double step_s = seconds_between(jump->from, jump->to);
-    if (step_s > kPause_s) {
+    if (step_s > kPause_s && !jump->to_fixes) {
       so_far_.pause(jump->to, step_s);
     } else {
       so_far_.clear();
