@@ -81,8 +81,14 @@ void Estimator::set_up() {
 }
 
 void Estimator::know_yaw_rate(std::size_t odometry, std::string_view source) {
+  const std::string& name = description_.odometry[odometry].name;
   description_.odometry[odometry].assembly.yaw_rate_from = source;  // what is learned needs it as well
+  FusionSetup learned = setup_;
   set_up();
+  if (says_.counts.lessons == 0 || !has_several_odometries()) return;
+  // What a lesson has decided on the others stays.
+  learned.settings.sources[name] = setup_.settings.sources[name];
+  setup_ = std::move(learned);
 }
 
 void Estimator::begin_with(const WarmStart& start) {
