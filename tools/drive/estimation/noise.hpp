@@ -23,6 +23,10 @@ inline constexpr double kUsualNoise = 4;
 /// that are hundreds of times worse than they claim would explain any odometry.
 inline constexpr double kNoiseReach = 8;
 
+/// Returns the prior for receivers that claim an accuracy (NoisePrior::shrinks_with_claim).
+/// @param accuracy_m median; 0: none is claimed
+[[nodiscard]] NoisePrior prior_for(const NoisePrior& general, double accuracy_m);
+
 /// The estimate of one option.
 struct NoiseParameter {
   std::string source;  ///< of the drive, if it has several of that kind or is a sensor; otherwise empty

@@ -5,6 +5,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/clocks/clock_check.hpp>
 #include <waymark/tools/drive/coordinates/projection.hpp>
+#include <waymark/tools/drive/model/build.hpp>
 #include <waymark/tools/drive/model/fuse.hpp>
 #include <waymark/tools/drive/sensors/rough_fixes.hpp>
 #include <waymark/tools/live/learning/noise_ahead.hpp>
@@ -53,6 +54,8 @@ Lesson learn(const DriveSoFar& so_far, const drive::DriveDescription& descriptio
         drive::with_noise(drive::without_noise(std::move(modeled.settings), lesson.noise), lesson.noise);
     lesson.spread = mean_of(lesson.noise.spread);
     lesson.noise.spread.clear();
+    for (const drive::AbsoluteGroup& group : drive::groups_of(modeled.placed, lesson.setup.settings))
+      for (const int source : group.sources) lesson.setup.claimed[source] = group.claimed;
     lesson.setup.delays_s = std::move(modeled.placed.time_offsets_s);
     lesson.warnings = std::move(modeled.placed.warnings);
     lesson.left_out = std::move(modeled.placed.left_out);

@@ -1,5 +1,6 @@
 #include <waymark/tools/live/learning/search.hpp>
 
+#include <waymark/tools/live/learning/claims_ahead.hpp>
 #include <waymark/tools/live/learning/unlearned.hpp>
 
 namespace waymark::live {
@@ -19,6 +20,9 @@ Learned search(const SearchTask& task, const TypeRegistry& registry, const std::
                          task.left_out, registry, between);
   learned.lesson.setup.settings = with_noise_of_readings(
       std::move(learned.lesson.setup.settings), task.stated, task.description, task.so_far, registry);
+  learned.lesson.setup.settings = with_claims_ahead(
+      std::move(learned.lesson.setup.settings), task.stated, task.description,
+      {learned.lesson.noise, learned.lesson.length_s, learned.lesson.setup.claimed}, registry);
   learned.inputs = task.inputs.count();
   learned.resets = task.resets;
   const Lesson& lesson = learned.lesson;
