@@ -79,7 +79,8 @@ struct NoiseEstimate {
 /// It begins with usual noise; with an odometry that is worth little where the start follows the fixes.
 /// @param near an estimate of the same parameters for slightly other settings, to begin from
 /// @return values without deviations; no parameters if none is left to estimate
-/// @param between called before every building of a graph, some hundred times; what it throws ends the search.
+/// @param between called before every building of a graph, some hundred times, and after every step of the optimizer
+/// in it; what it throws ends the search.
 /// Empty: nothing is called
 /// @throws UsageError and InputError as the odometry model and the modeling do
 [[nodiscard]] NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,

@@ -16,8 +16,10 @@ UnusedSources unused_sources(const drive::DriveDescription& description, const s
 
 Learned search(const SearchTask& task, const TypeRegistry& registry, const std::function<void()>& between) {
   Learned learned;
-  learned.lesson = learn(task.so_far, described_so_far(task.description, task.frame), task.stated,
-                         task.left_out, registry, between);
+  learned.lesson =
+      learn(task.so_far,
+            {described_so_far(task.description, task.frame), task.stated, task.left_out, task.walk_is_open},
+            registry, between);
   learned.lesson.setup.settings = with_noise_of_readings(
       std::move(learned.lesson.setup.settings), task.stated, task.description, task.so_far, registry);
   learned.lesson.setup.settings = with_claims_ahead(
