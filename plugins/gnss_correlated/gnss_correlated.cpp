@@ -1,5 +1,6 @@
 #include <waymark/plugins/gnss_correlated/gnss_bias.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -32,13 +33,15 @@ struct ErrorModel {
   double bias_per_accuracy = 0;
   double bias_time_s = 0;
   double accuracy_exponent = 0;
+  double accuracy_exponent_sigma = 0;
   double kind_exponent = 0;
+  double reference_accuracy_m = 0;  // 0: that of the coarsest kind
   bool heavy_tails = true;
 
   /// Returns how much larger the errors of a kind of solution are than those that the sigmas hold for.
   /// Between kinds the claims count nearly as they are: a fixed ambiguity is worth its centimetres.
   [[nodiscard]] double kind_scale(const ClaimedAccuracies& claimed, SolutionKind kind) const {
-    const double reference_m = claimed.reference_m();
+    const double reference_m = reference_accuracy_m > 0 ? reference_accuracy_m : claimed.reference_m();
     const double median_m = claimed.of(kind);
     return reference_m > 0 && median_m > 0 ? std::pow(median_m / reference_m, kind_exponent) : 1;
   }
@@ -65,13 +68,24 @@ struct ErrorModel {
     const double scale = kind_scale(claimed, kind);
     const double median_m = claimed.of(kind);
     if (!fix.accuracy_claimed || !(median_m > 0)) return scale * Eigen::Matrix2d::Identity();
+    const auto [variances, directions] = symmetric_eigen(fix.covariance);
+    const Eigen::Vector2d errors =
+        (variances.cwiseMax(0).cwiseSqrt() / median_m).unaryExpr([this](double claim) {
+          return relative_error(claim);
+        });
+    return directions * (scale * errors).asDiagonal() * directions.transpose();
+  }
+
+  /// Returns the deviation of the errors of a claim over that of the median claim, both at once: over claim^p for a
+  /// normal p it is claim^mean exp(deviation^2 log^2 claim). A claim that is larger than all before is beyond what the
+  /// drive has told of p; its errors are not taken for larger than it says. @param claim over the median
+  [[nodiscard]] double relative_error(double claim) const {
     constexpr double kSmallest = 0.3;
     constexpr double kLargest = 30;
-    const auto [variances, directions] = symmetric_eigen(fix.covariance);
-    const Eigen::Vector2d sigma =
-        (variances.cwiseMax(0).cwiseSqrt() / median_m).cwiseMax(kSmallest).cwiseMin(kLargest);
-    return directions * (scale * sigma.array().pow(accuracy_exponent)).matrix().asDiagonal() *
-           directions.transpose();
+    const double expected = std::pow(std::clamp(claim, kSmallest, kLargest), accuracy_exponent);
+    const double logarithm = std::log(std::max(claim, kSmallest));
+    const double widened = expected * std::exp(std::pow(accuracy_exponent_sigma * logarithm, 2));
+    return std::min(widened, std::max({expected, claim, 1.0}));
   }
 };
 
@@ -178,10 +192,16 @@ std::vector<OptionInfo> options() {
       {"accuracy_exponent", "0.5", "", OptionRange{0, 1},
        "weight of the claimed accuracies: 0 ignores them, 1 takes them as they are",
        NoisePrior{0.5, 0.3, true}},
+      {"accuracy_exponent_sigma", "0", "", OptionRange{0, 1},
+       "how well accuracy_exponent is known: the errors of a fix are those that are expected over a normal distribution "
+       "of it, at most as large as claimed"},
       {"kind_exponent", "1", "", OptionRange{0, 2},
        "weight of the claims between kinds of solutions (code, float, fixed): the errors of a kind are as "
        "the ratio of its median claim to that of the coarsest kind, to this power",
        NoisePrior{1, 0.3, true, false, true}},
+      {"reference_accuracy", "0", "m", OptionRange{0, 1e6},
+       "median claim of the fixes that white_sigma and multipath_sigma hold for; 0: that of the coarsest kind of "
+       "solution so far"},
       {"time_offset", "off", "", OptionWords{"off", "constant"},
        "delay of the fixes against the odometry: 'off', or 'constant' (estimated)"},
       {"time_offset_sigma", "0.3", "s", OptionRange{1e-6, 100}, "sigma of the prior of time_offset about 0"},
@@ -198,6 +218,8 @@ std::unique_ptr<GnssModeling> make(const CheckedOptions& options) {
   model.bias_share = options.number("bias_share");
   model.bias_time_s = options.number("bias_time");
   model.accuracy_exponent = options.number("accuracy_exponent");
+  model.accuracy_exponent_sigma = options.number("accuracy_exponent_sigma");
+  model.reference_accuracy_m = options.number("reference_accuracy");
   model.kind_exponent = options.number("kind_exponent");
   model.heavy_tails = options.word("tails") == "student";
   const bool has_offset = options.word("time_offset") == "constant";

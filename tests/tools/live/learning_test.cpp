@@ -1,16 +1,22 @@
 // The noise of the drive so far: what a live estimate learns, when, and what that changes.
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <future>
 #include <random>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
 #include <waymark/tools/live/estimator/window/window_setup.hpp>
+#include <waymark/tools/live/learning/drive_so_far.hpp>
+#include <waymark/tools/live/learning/lesson.hpp>
 #include <waymark/tools/live/learning/noise_ahead.hpp>
+#include <waymark/tools/live/learning/unlearned.hpp>
 
 #include "live_drive.hpp"
 #include "support/registry.hpp"
@@ -69,6 +75,21 @@ drive::NoiseParameter parameter_of(double value, bool linear = false) {
   return parameter;
 }
 
+Lesson lesson_of(const LiveDrive& drive, const std::function<void()>& between) {
+  const drive::DriveDescription description = live_description();
+  DriveSoFar so_far(description, 1800);
+  for (const Sample& sample : drive.arrivals) so_far.take(sample);
+  const GeodeticFix& first = drive.simulated.fixes.front().fix;
+  const Frame frame =
+      drive::choose_frame({first.latitude_deg, first.longitude_deg}, std::nullopt, std::nullopt);
+  return learn(so_far,
+               {described_so_far(description, frame),
+                with_open_calibration(live_fusion(), description, so_far, registry()),
+                {},
+                true},
+               registry(), between);
+}
+
 double ahead(double value, double told, double length_s) {
   drive::NoiseEstimate noise;
   noise.parameters = {parameter_of(value)};
@@ -91,6 +112,38 @@ TEST_CASE("noise ahead: few minutes tell little of the next ones, many tell all"
   SECTION("larger noise than the prior expects is taken as it is") {
     CHECK(ahead(10, kTold, 60) == Approx(10));
   }
+}
+
+TEST_CASE("a gyro whose bias walks is learned from the fixes, without a stop", "[live]") {
+  const auto learned_walk = [](double walk) {  // rad/s/sqrt(s)
+    LiveDrive drive = live_drive("rural", 300);
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    double bias = 0;
+    for (Sample& sample : drive.arrivals) {
+      auto* odometry = std::get_if<OdometrySample>(&sample);
+      if (odometry == nullptr) continue;
+      bias += walk * std::sqrt(0.04) * normal(random);
+      odometry->yaw_rate_radps += bias;
+    }
+    return std::stod(lesson_of(drive, {}).setup.settings.odometry_options.at("gyro_bias_walk"));
+  };
+  const double none = learned_walk(0);
+  CHECK(none < 4e-5);  // the usual one is 2e-5
+  CHECK(learned_walk(1.5e-3) > 3 * none);
+}
+
+TEST_CASE("a search takes no more steps than a lesson may, whatever the drive", "[live]") {
+  LiveDrive drive = live_drive("urban", 120);
+  for (std::size_t i = drive.arrivals.size() / 2; i < drive.arrivals.size();
+       ++i)  // the engine is off for ten minutes
+    std::visit([](auto& sample) { sample.stamp = sample.stamp.later(600); }, drive.arrivals[i]);
+  std::size_t steps = 0;
+  const Lesson lesson = lesson_of(drive, [&] { ++steps; });
+  CHECK(lesson.failure.empty());
+  CHECK(steps > 0);
+  // A million and 2000 for each second, over the length: 720 s, then 360 s, then 180 s.
+  CHECK(static_cast<double>(steps) <= 3 * (1e6 / 180 + 2000));
 }
 
 TEST_CASE("a live estimate learns the noise of its drive, and is better for it", "[live]") {

@@ -114,6 +114,37 @@ TEST_CASE("a turntable is seen by a gyro that has a bias", "[live]") {
   CHECK(turned_rad == Approx(40 * rate_radps).margin(0.02));
 }
 
+TEST_CASE("a turntable is seen by a gyro whose readings come unevenly", "[live]") {
+  constexpr double kRate_radps = 0.05;
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, 1e-3);
+  SpotTurns guard;
+  double turned_rad = 0;
+  OdometrySample last;
+  double time_s = 1000;
+  for (std::size_t i = 0; i < 3000; ++i) {
+    time_s += i % 3 == 0 ? 0.09 : 0.015;  // 40 ms on average, in bursts
+    const double rate = time_s >= 1020 && time_s < 1060 ? kRate_radps : 0;
+    const OdometrySample judged = guard.judged({Stamp::from_seconds(time_s), 0, rate + noise(random)});
+    if (i > 0 && judged.turns_on_spot && last.turns_on_spot)
+      turned_rad +=
+          0.5 * (judged.yaw_rate_radps + last.yaw_rate_radps) * seconds_between(last.stamp, judged.stamp);
+    last = judged;
+  }
+  CHECK(turned_rad == Approx(40 * kRate_radps).margin(0.04));
+}
+
+TEST_CASE("a turn that was learned first is no standing for ever", "[live]") {
+  SpotTurns guard;
+  std::size_t turns = 0;
+  for (std::size_t i = 0; i < 10'000; ++i) {
+    const OdometrySample judged =
+        guard.judged(sample_at(i, 0, i < 250 ? 0.1 : 0.01));  // ten seconds, then still
+    if (i > 5000) turns += judged.turns_on_spot ? 1 : 0;
+  }
+  CHECK(turns == 0);
+}
+
 TEST_CASE("a rare kind of solution keeps its claims", "[live]") {
   ClaimsSoFar claims;
   ClaimedAccuracies last;

@@ -17,14 +17,6 @@
 namespace waymark::drive {
 namespace {
 
-/// The prior for receivers that claim an accuracy. @param accuracy_m median; 0: none is claimed
-NoisePrior prior_for(const NoisePrior& general, double accuracy_m) {
-  constexpr double kCoarse_m = 0.5;
-  NoisePrior prior = general;
-  if (prior.shrinks_with_claim && accuracy_m > 0) prior.mean *= std::min(1.0, accuracy_m / kCoarse_m);
-  return prior;
-}
-
 /// Tells whether a noise parameter has an effect with these options.
 bool takes_effect(const NoisePrior& prior, const std::vector<OptionInfo>& known, const Options& given) {
   if (prior.where_option.empty()) return true;
@@ -283,6 +275,13 @@ std::vector<Options*> options_with(const NoiseParameter& parameter, FusionSettin
 }
 
 }  // namespace
+
+NoisePrior prior_for(const NoisePrior& general, double accuracy_m) {
+  constexpr double kCoarse_m = 0.5;
+  NoisePrior prior = general;
+  if (prior.shrinks_with_claim && accuracy_m > 0) prior.mean *= std::min(1.0, accuracy_m / kCoarse_m);
+  return prior;
+}
 
 bool NoiseEstimate::is_poor_odometry(const std::string& name) const {
   return std::any_of(parameters.begin(), parameters.end(), [&](const NoiseParameter& of) {

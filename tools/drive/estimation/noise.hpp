@@ -23,6 +23,10 @@ inline constexpr double kUsualNoise = 4;
 /// that are hundreds of times worse than they claim would explain any odometry.
 inline constexpr double kNoiseReach = 8;
 
+/// Returns the prior for receivers that claim an accuracy (NoisePrior::shrinks_with_claim).
+/// @param accuracy_m median; 0: none is claimed
+[[nodiscard]] NoisePrior prior_for(const NoisePrior& general, double accuracy_m);
+
 /// The estimate of one option.
 struct NoiseParameter {
   std::string source;  ///< of the drive, if it has several of that kind or is a sensor; otherwise empty
@@ -75,7 +79,8 @@ struct NoiseEstimate {
 /// It begins with usual noise; with an odometry that is worth little where the start follows the fixes.
 /// @param near an estimate of the same parameters for slightly other settings, to begin from
 /// @return values without deviations; no parameters if none is left to estimate
-/// @param between called before every building of a graph, some hundred times; what it throws ends the search.
+/// @param between called before every building of a graph, some hundred times, and after every step of the optimizer
+/// in it; what it throws ends the search.
 /// Empty: nothing is called
 /// @throws UsageError and InputError as the odometry model and the modeling do
 [[nodiscard]] NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,

@@ -112,6 +112,7 @@ void NoiseObjective::find_poses(double tolerance) {
   OptimizerOptions options;
   options.decrement_tolerance = kNearMinimum;
   options.max_iterations = 200;
+  if (between_) options.observer = [this](const IterationRecord&) { between_(); };
   optimize(graph_, kept_, *algorithm_, options);
   const std::vector<double> near = graph_.values();
   if (polish(tolerance)) return;

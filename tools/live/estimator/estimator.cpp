@@ -11,6 +11,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/sensors/rough_fixes.hpp>
 #include <waymark/tools/live/estimator/window/window_setup.hpp>
+#include <waymark/tools/live/learning/claims_ahead.hpp>
 #include <waymark/tools/live/learning/unlearned.hpp>
 #include <waymark/types_se2/se2.hpp>
 
@@ -20,9 +21,17 @@ namespace {
 constexpr double kSecondsWithoutFix = 2;  // then a solution moves the window on
 constexpr double kLongestStretch = 10;    // s of poses that leave the window together
 constexpr double kPlacesFrame_m = 1000;   // a frame is not chosen by a rougher place
-constexpr double kRoughStart_s = 30;      // positions of single epochs are wrong alike for many seconds
 constexpr double kLooksBack = 60;         // s, for the alignment
 constexpr double kRemembered_s = 1800;    // of the drive, to learn from
+
+std::string words_for(const ClockJump& jump) {
+  const double jump_s = seconds_between(jump.from, jump.to);
+  if (!jump.to_fixes) return fmt::format("the clock of the odometry has jumped by {:.3f} s", jump_s);
+  return fmt::format(
+      "the stamps of the odometry and of the fixes are {:.3f} s apart: those of the odometry are moved to the fixes, "
+      "by the order of arrival",
+      jump_s);
+}
 
 }  // namespace
 
@@ -69,11 +78,19 @@ void Estimator::set_up() {
   }
   if (*settings.estimates_noise) settings = drive::with_noise(std::move(settings), noise_);
   settings = with_usual_noise(std::move(settings), description_, registry_);
+  settings =
+      with_claims_ahead(std::move(settings), stated_, description_, {noise_, 0, setup_.claimed}, registry_);
 }
 
 void Estimator::know_yaw_rate(std::size_t odometry, std::string_view source) {
+  const std::string& name = description_.odometry[odometry].name;
   description_.odometry[odometry].assembly.yaw_rate_from = source;  // what is learned needs it as well
+  FusionSetup learned = setup_;
   set_up();
+  if (says_.counts.lessons == 0 || !has_several_odometries()) return;
+  // What a lesson has decided on the others stays.
+  learned.settings.sources[name] = setup_.settings.sources[name];
+  setup_ = std::move(learned);
 }
 
 void Estimator::begin_with(const WarmStart& start) {
@@ -172,14 +189,19 @@ void Estimator::finish() {
 }
 
 void Estimator::work() {
+  if (const std::optional<double> step_s = intake_.step())
+    say("clock", description_.odometry.front().name,
+        fmt::format(
+            "its clock has stepped by {:.3f} s, and that of the fixes has not: its stamps are moved back by "
+            "that from here on",
+            *step_s));
   if (const std::optional<ClockJump> jump = intake_.jump()) {
-    reset("jump", fmt::format("the clock of the odometry has jumped by {:.3f} s",
-                              seconds_between(jump->from, jump->to)));
+    reset("jump", words_for(*jump));
     forget_motion();
     // After a pause the drive so far is still one drive. After another step of the clock it is not.
     constexpr double kPause_s = 60;
     const double step_s = seconds_between(jump->from, jump->to);
-    if (step_s > kPause_s) {
+    if (step_s > kPause_s && !jump->to_fixes) {
       so_far_.pause(jump->to, step_s);
     } else {
       so_far_.clear();
@@ -479,59 +501,6 @@ void Estimator::reset(const std::string& kind, const std::string& text) {
   readings_.clear();
   failures_ = 0;
   say(kind, "", text);
-}
-
-// Rough places are a start, and no measurements.
-void Estimator::begin_window(PlacedStretch stretch, std::optional<drive::FirstPose> first_pose) {
-  if (!rough_.any()) stretch.fixes.assign(fixes_.begin(), fixes_.end());
-  FusionSetup setup = setup_;
-  setup.settings =
-      with_noise_of_readings(std::move(setup.settings), stated_, description_, so_far_, registry_);
-  std::unique_ptr<Window> window =
-      make_window(description_, setup, *frame_, std::move(first_pose), registry_);
-  for (const SensorReading& reading : readings_)
-    if (reading.stamp >= stretch.stamps.front())
-      window->add_reading(reading.sensor, reading.stamp, reading.values);
-  if (!window->begin(stretch)) {
-    says_.fail(now_, "the first fixes and the odometry have no common minimum");
-    return;
-  }
-  if (warm_ && !warm_->states.empty()) {
-    window->add_known(warm_->states);
-    if (!window->solve()) return;
-  }
-  warm_.reset();
-  window_ = std::move(window);
-  fixes_.clear();
-  readings_.clear();
-  smooth_ = window_->newest_pose();
-  last_cycle_ = now_;
-  ++says_.counts.solutions;
-  publish(true);
-  drop();
-}
-
-// A pose of a former run holds if the vehicle has not been moved since: the first fix decides.
-void Estimator::align_warm() {
-  if (const std::optional<double> away_m = moved_since(*warm_, fixes_.front(), live_)) {
-    say("moved", "",
-        fmt::format("the vehicle is {:.1f} m from where the former run ended: its pose is not used",
-                    *away_m));
-    warm_->pose.reset();
-    return;
-  }
-  begin_window(placed_at(*warm_->pose, reckoning_), first_pose_of(*warm_));
-}
-
-void Estimator::align() {
-  if (reckoning_.nodes().size() < 2 || fixes_.empty()) return;
-  if (warm_ && warm_->pose) {
-    align_warm();
-    if (window_ || (warm_ && warm_->pose)) return;
-  }
-  if (rough_.any() && seconds_between(fixes_.front().stamp, now_) < kRoughStart_s) return;
-  if (heading_is_known(fixes_, reckoning_, live_))
-    begin_window(laid_along(fixes_, reckoning_, setup_.settings), std::nullopt);
 }
 
 void Estimator::judge_state() {

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kFuture = 60;         // s: a stamp that is further ahead of the odometry cannot be
 constexpr std::size_t kConvinced = 3;  // so many samples in a row tell that the clock has jumped
+constexpr double kLeastStep_s = 1;     // of the clock of the odometry alone
 constexpr std::size_t kMostWaiting = 100'000;
 
 bool is_finite(const OdometrySample& sample) {
@@ -62,34 +63,122 @@ void Intake::insert(Sample sample, std::size_t order) {
   waiting_.insert(place, Waiting{std::move(sample), stamp, order});
 }
 
-// A step of the clock is believed when some samples in a row follow one another on the new one.
-Arrival Intake::take_odometry(const OdometrySample& sample) {
+bool Intake::is_plausible(double ahead_s) const {
+  return ahead_s <= longest_gap_s_ && ahead_s > -std::max(1.0, reorder_s_);
+}
+
+/// Tells whether the odometry was silent so long that fixes should have come, and none has: its clock may have stepped.
+bool Intake::is_silence(double ahead_s) const {
+  constexpr double kIntervals = 1.5;
+  if (ahead_s <= kLeastStep_s || ahead_s <= 5 * interval_s_ || relation_.fixes_since_odometry() > 0)
+    return false;
+  const std::optional<double> within_s = relation_.next_fix_within_s(*newest_);
+  return within_s && ahead_s > kIntervals * *within_s;
+}
+
+Arrival Intake::take_odometry(OdometrySample sample) {
+  sample.stamp.nanoseconds += moved_ns_;
   const double ahead_s = newest_ ? seconds_between(*newest_, sample.stamp) : 0;
-  const bool plausible = !newest_ || (ahead_s <= longest_gap_s_ && ahead_s > -std::max(1.0, reorder_s_));
-  if (plausible) {
-    suspended_.clear();
-    if (released_odometry_ && sample.stamp <= *released_odometry_)
-      return sample.stamp == *released_odometry_ ? Arrival::duplicate : Arrival::late;
-    if (is_duplicate(sample, 0)) return Arrival::duplicate;
-    insert(sample, 0);
-    newest_ = newest_ ? std::max(*newest_, sample.stamp) : sample.stamp;
-    return Arrival::taken;
-  }
+  if (newest_ && (!is_plausible(ahead_s) || is_silence(ahead_s))) return suspend(sample);
+  suspended_.clear();
+  relation_.take_odometry();
+  if (released_odometry_ && sample.stamp <= *released_odometry_)
+    return sample.stamp == *released_odometry_ ? Arrival::duplicate : Arrival::late;
+  if (is_duplicate(sample, 0)) return Arrival::duplicate;
+  insert(sample, 0);
+  if (ahead_s > 0) interval_s_ = ahead_s;
+  newest_ = newest_ ? std::max(*newest_, sample.stamp) : sample.stamp;
+  return Arrival::taken;
+}
+
+// A step of the clock is believed when some samples in a row follow one another on the new one.
+Arrival Intake::suspend(const OdometrySample& sample) {
   if (!suspended_.empty()) {
     const double step_s = seconds_between(suspended_.back().stamp, sample.stamp);
     if (step_s <= 0 || step_s > longest_gap_s_) suspended_.clear();
   }
+  if (suspended_.empty()) told_s_.reset();
   suspended_.push_back(sample);
-  if (suspended_.size() < kConvinced) return Arrival::suspended;
+  decide();
+  return suspended_.empty() ? Arrival::taken : Arrival::suspended;
+}
+
+/// Tells whether a fix should come soon, which tells whose clock has stepped.
+bool Intake::waits_for_fix() const {
+  constexpr double kIntervals = 1.5;
+  constexpr double kMore_s = 1;
+  constexpr double kLongest_s = 12;
+  const std::optional<double> within_s = relation_.next_fix_within_s(*newest_);
+  return within_s && seconds_between(suspended_.front().stamp, suspended_.back().stamp) <
+                         std::min(kLongest_s, kIntervals * *within_s + kMore_s);
+}
+
+// If only the clock of the odometry has stepped, the fix is as late as usual on the clock before: that goes on from the
+// last sample by an interval, and by more if the odometry was silent as well.
+void Intake::hear(const GeodeticFix& fix) {
+  constexpr double kLikely = 0.25;  // of the step
+  constexpr double kSilence_s = 0.3;
+  if (!newest_) return;
+  const std::optional<double> usual_s = relation_.usual_lateness_s(fix.source);
+  if (suspended_.empty()) return relation_.take_fix(fix.source, fix.stamp, *newest_);
+  if (told_s_ || !usual_s) return;
+  const double step_s = seconds_between(*newest_, suspended_.front().stamp) - interval_s_;
+  const double late_s = seconds_between(fix.stamp, suspended_.back().stamp) - step_s - *usual_s;
+  const bool alone = std::abs(late_s) < kLikely * std::abs(step_s);
+  told_s_ = alone ? -step_s + (late_s < -kSilence_s ? -late_s : 0) : 0;
+  decide();
+}
+
+void Intake::decide() {
+  if (suspended_.size() < kConvinced || (!told_s_ && waits_for_fix())) return;
+  const double moved_s = told_s_.value_or(0);
+  told_s_.reset();
+  if (moved_s == 0 && !is_plausible(seconds_between(*newest_, suspended_.front().stamp)))
+    return begin_at_suspended();
+  if (moved_s != 0) step_s_ = -moved_s;
+  take_suspended(moved_s);
+}
+
+void Intake::take_suspended(double moved_s) {
+  const std::int64_t moved_ns = std::llround(moved_s * 1e9);
+  moved_ns_ += moved_ns;
+  for (OdometrySample& kept : std::exchange(suspended_, {})) {
+    kept.stamp.nanoseconds += moved_ns;
+    insert(kept, 0);
+    newest_ = std::max(*newest_, kept.stamp);
+  }
+  relation_.take_odometry();
+}
+
+void Intake::begin_at_suspended() {
   jump_ = ClockJump{*newest_, suspended_.front().stamp};
   // What waits on the old clock is of no use; what was too early for it may be of the new one.
   std::erase_if(waiting_, [&](const Waiting& other) { return other.order == 0 || other.stamp < jump_->to; });
   late_.clear();
   released_.reset();
   released_odometry_.reset();
+  relation_.forget();
   newest_ = suspended_.back().stamp;
   for (const OdometrySample& kept : std::exchange(suspended_, {})) insert(kept, 0);
-  return Arrival::taken;
+}
+
+/// Begins anew on the clock of the fixes.
+void Intake::move_to_fixes(double moved_s) {
+  jump_ = ClockJump{*newest_, newest_->later(moved_s), true};
+  moved_ns_ += std::llround(moved_s * 1e9);
+  waiting_.clear();
+  late_.clear();
+  suspended_.clear();
+  released_.reset();
+  released_odometry_.reset();
+  relation_.forget();
+  newest_ = jump_->to;
+}
+
+void Intake::finish() {
+  finished_ = true;
+  if (!suspended_.empty() && is_plausible(seconds_between(*newest_, suspended_.front().stamp)))
+    take_suspended(0);
 }
 
 // A further odometry keeps the time going while the first one is silent, but no stamp of it moves the clock by
@@ -111,6 +200,10 @@ Arrival Intake::take(Sample sample) {
   if (!std::visit([](const auto& of) { return is_finite(of); }, sample)) return Arrival::not_finite;
   if (const auto* odometry = std::get_if<OdometrySample>(&sample)) return take_odometry(*odometry);
   if (const auto* further = std::get_if<FurtherOdometry>(&sample)) return take_further(*further);
+  if (const auto* fix = std::get_if<GeodeticFix>(&sample)) {
+    hear(*fix);
+    if (const std::optional<double> apart_s = relation_.apart_s()) move_to_fixes(*apart_s);
+  }
   const Stamp stamp = stamp_of(sample);
   const std::size_t order = order_of(sample);
   if (newest_ && seconds_between(*newest_, stamp) > kFuture) return Arrival::future;

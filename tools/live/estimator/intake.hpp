@@ -3,16 +3,21 @@
 /// Time is what the stamps of the odometries say. A sample is released when the odometry is later by the
 /// bound. So no sample of another source can move the time: one stamp in the future waits, and does no
 /// harm.
+///
+/// If the clock of the odometry steps while fixes go on as before, its stamps are moved back by the step from then on.
+/// The next fix tells; samples of the odometry wait for it, for the time in which it should come.
 #pragma once
 
 #include <cstdint>
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include <waymark/core/drive/sample.hpp>
+#include <waymark/tools/live/estimator/guards/clock_relation.hpp>
 
 namespace waymark::live {
 
@@ -48,6 +53,7 @@ enum class Arrival {
 struct ClockJump {
   Stamp from;
   Stamp to;
+  bool to_fixes = false;  ///< the stamps of the odometry are moved to those of the fixes from here on
 };
 
 class Intake {
@@ -60,10 +66,12 @@ class Intake {
   Arrival take(Sample sample);
   /// Returns a jump of the clock since the last call. Samples that waited are gone.
   [[nodiscard]] std::optional<ClockJump> jump();
+  /// Returns a step of the odometry's clock alone since the last call, s: by this its stamps are moved back.
+  [[nodiscard]] std::optional<double> step() { return std::exchange(step_s_, std::nullopt); }
   /// Returns the next sample in order of time, if there is one.
   [[nodiscard]] std::optional<Sample> next();
   /// Ends the waiting: all samples are released.
-  void finish() { finished_ = true; }
+  void finish();
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
 
  private:
@@ -72,7 +80,16 @@ class Intake {
     Stamp stamp;
     std::size_t order;  // samples of one stamp: odometry, sensors, fixes by source
   };
-  Arrival take_odometry(const OdometrySample& sample);
+  Arrival take_odometry(OdometrySample sample);
+  Arrival suspend(const OdometrySample& sample);
+  [[nodiscard]] bool is_plausible(double ahead_s) const;
+  [[nodiscard]] bool is_silence(double ahead_s) const;
+  [[nodiscard]] bool waits_for_fix() const;
+  void hear(const GeodeticFix& fix);
+  void decide();
+  void begin_at_suspended();
+  void take_suspended(double moved_s);
+  void move_to_fixes(double moved_s);
   Arrival take_further(const FurtherOdometry& sample);
   void insert(Sample sample, std::size_t order);
   [[nodiscard]] bool is_duplicate(const Sample& sample, std::size_t order) const;
@@ -86,6 +103,11 @@ class Intake {
   std::optional<Stamp> released_odometry_;
   std::vector<OdometrySample> suspended_;
   std::optional<ClockJump> jump_;
+  ClockRelation relation_;
+  double interval_s_ = 0;         // of the odometry, the last one
+  std::int64_t moved_ns_ = 0;     // that the stamps of the odometry are moved by
+  std::optional<double> told_s_;  // by the first fix after a step: by how much the odometry is to be moved
+  std::optional<double> step_s_;
   bool finished_ = false;
 };
 

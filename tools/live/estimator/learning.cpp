@@ -16,10 +16,10 @@ void Estimator::learn(Stamp now) {
 }
 
 void Estimator::begin_search(Stamp now) {
-  const auto task = std::make_shared<const SearchTask>(
-      SearchTask{so_far_, description_, with_open_calibration(stated_, description_, so_far_, registry_),
-                 setup_, left_out_, *frame_, window_ ? window_->inputs() : WindowInputs(),
-                 window_ ? window_->oldest() : now, says_.counts.resets});
+  const auto task = std::make_shared<const SearchTask>(SearchTask{
+      so_far_, description_, with_open_calibration(stated_, description_, so_far_, registry_),
+      walk_is_open(stated_, description_), setup_, left_out_, *frame_,
+      window_ ? window_->inputs() : WindowInputs(), window_ ? window_->oldest() : now, says_.counts.resets});
   learner_.begin(now, so_far_.length_s(),
                  [task, &registry = registry_](const std::function<void()>& between) {
                    return search(*task, registry, between);

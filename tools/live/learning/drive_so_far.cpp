@@ -1,6 +1,7 @@
 #include <waymark/tools/live/learning/drive_so_far.hpp>
 
 #include <algorithm>
+#include <optional>
 
 namespace waymark::live {
 namespace {
@@ -34,11 +35,21 @@ void DriveSoFar::take(const Sample& sample) {
     const auto& reading = std::get<SensorReading>(sample);
     readings_[reading.sensor].push_back(reading);
   }
-  const Stamp oldest = stamp_of(sample).later(-kept_s_);
+  keep_since(stamp_of(sample).later(-kept_s_));
+}
+
+void DriveSoFar::keep_since(Stamp oldest) {
   forget_before(oldest, odometries_);
   forget_before(oldest, fixes_);
   forget_before(oldest, readings_);
   forget_before(oldest, pauses_);
+}
+
+void DriveSoFar::keep_last(double length_s) {
+  std::optional<Stamp> newest;
+  for (const auto& samples : odometries_)
+    if (!samples.empty()) newest = newest ? std::max(*newest, samples.back().stamp) : samples.back().stamp;
+  if (newest) keep_since(newest->later(-length_s));
 }
 
 void DriveSoFar::clear() {

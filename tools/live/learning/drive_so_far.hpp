@@ -18,6 +18,8 @@ class DriveSoFar {
   /// Takes a sample without its stated delay.
   void take(const Sample& sample);
   void clear();
+  /// Forgets what was before its last part. @param length_s of that
+  void keep_last(double length_s);
   /// Tells that the drive was interrupted. @param until when it went on @param length_s of the interruption
   void pause(Stamp until, double length_s) { pauses_.push_back({until, length_s}); }
   /// Returns the time from the first to the last sample of the odometries, without the pauses.
@@ -32,6 +34,8 @@ class DriveSoFar {
   [[nodiscard]] std::vector<SensorTable> readings() const;
 
  private:
+  void keep_since(Stamp oldest);
+
   struct Pause {
     Stamp stamp;  // of its end
     double length_s = 0;

@@ -27,12 +27,20 @@ struct Lesson {
   std::string failure;             ///< why the drive so far tells nothing; empty: it does
 };
 
-/// @param description from described_so_far() @param stated settings of the drive, without what was learned
-/// @param suspects sources that were left out of an earlier part of the drive
+/// What a lesson depends on beside the drive.
+struct LessonTask {
+  drive::DriveDescription description;  ///< from described_so_far()
+  drive::FusionSettings stated;         ///< settings of the drive, without what was learned
+  std::set<std::string> suspects;       ///< sources that were left out of an earlier part of the drive
+  /// nobody has stated how far the bias of the first odometry's gyro walks: bias_walk.hpp
+  bool walk_is_open = true;
+};
+
+/// A search that goes astray is ended after some times the steps that others take, and done again for the last half of
+/// the drive, and for half of that.
 /// @param between called between the steps of the search; what it throws ends it
-[[nodiscard]] Lesson learn(const DriveSoFar& so_far, const drive::DriveDescription& description,
-                           const drive::FusionSettings& stated, const std::set<std::string>& suspects,
-                           const TypeRegistry& registry, const std::function<void()>& between);
+[[nodiscard]] Lesson learn(DriveSoFar so_far, const LessonTask& task, const TypeRegistry& registry,
+                           const std::function<void()>& between);
 
 /// Returns "white_sigma 1.2 m, heading_variance_per_s 3.1e-07 rad^2/s": the parameters that the drive shows.
 [[nodiscard]] std::string in_words(const drive::NoiseEstimate& noise);

@@ -14,4 +14,8 @@ namespace waymark::live {
 /// @param noise with its curvature, from a whole search @param length_s of the drive so far
 [[nodiscard]] drive::NoiseEstimate noise_ahead(drive::NoiseEstimate noise, double length_s);
 
+/// Returns the deviation of a parameter in the minutes ahead.
+/// @param deviation of the drive so far, above 0 @param of_prior its deviation without a drive
+[[nodiscard]] double deviation_ahead(double deviation, double of_prior, double length_s);
+
 }  // namespace waymark::live

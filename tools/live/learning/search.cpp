@@ -1,5 +1,6 @@
 #include <waymark/tools/live/learning/search.hpp>
 
+#include <waymark/tools/live/learning/claims_ahead.hpp>
 #include <waymark/tools/live/learning/unlearned.hpp>
 
 namespace waymark::live {
@@ -15,10 +16,15 @@ UnusedSources unused_sources(const drive::DriveDescription& description, const s
 
 Learned search(const SearchTask& task, const TypeRegistry& registry, const std::function<void()>& between) {
   Learned learned;
-  learned.lesson = learn(task.so_far, described_so_far(task.description, task.frame), task.stated,
-                         task.left_out, registry, between);
+  learned.lesson =
+      learn(task.so_far,
+            {described_so_far(task.description, task.frame), task.stated, task.left_out, task.walk_is_open},
+            registry, between);
   learned.lesson.setup.settings = with_noise_of_readings(
       std::move(learned.lesson.setup.settings), task.stated, task.description, task.so_far, registry);
+  learned.lesson.setup.settings = with_claims_ahead(
+      std::move(learned.lesson.setup.settings), task.stated, task.description,
+      {learned.lesson.noise, learned.lesson.length_s, learned.lesson.setup.claimed}, registry);
   learned.inputs = task.inputs.count();
   learned.resets = task.resets;
   const Lesson& lesson = learned.lesson;

@@ -20,6 +20,7 @@ struct SearchTask {
   DriveSoFar so_far;
   drive::DriveDescription description;
   drive::FusionSettings stated;    ///< without what was learned before
+  bool walk_is_open = true;        ///< as LessonTask has it
   FusionSetup setup;               ///< of the present window
   std::set<std::string> left_out;  ///< sources that are not used at present
   Frame frame;

@@ -74,6 +74,12 @@ drive::FusionSettings with_open_calibration(drive::FusionSettings stated,
   return stated;
 }
 
+bool walk_is_open(const drive::FusionSettings& stated, const drive::DriveDescription& description) {
+  const drive::OdometryConfig& first = description.odometry.front();
+  return is_gyro(first) &&
+         !drive::for_relative(stated, first.name).odometry_options.contains("gyro_bias_walk");
+}
+
 drive::FusionSettings with_usual_noise(drive::FusionSettings settings,
                                        const drive::DriveDescription& description,
                                        const TypeRegistry& registry) {

@@ -26,6 +26,10 @@ namespace waymark::live {
                                                           const DriveSoFar& so_far,
                                                           const TypeRegistry& registry);
 
+/// Tells whether the settings leave open how far the bias of the first odometry's gyro walks.
+[[nodiscard]] bool walk_is_open(const drive::FusionSettings& stated,
+                                const drive::DriveDescription& description);
+
 /// Returns the settings with the noise of each odometry that is neither stated nor learned.
 /// @param settings from drive::decided()
 [[nodiscard]] drive::FusionSettings with_usual_noise(drive::FusionSettings settings,

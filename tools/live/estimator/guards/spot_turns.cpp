@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kWindow_s = 1;
 constexpr double kFewestCalm = 5;
+constexpr double kLongestTurn_s = 120;
 
 }  // namespace
 
@@ -25,6 +26,25 @@ double SpotTurns::clear_radps() const {
   constexpr double kClear_radps = 0.015;
   constexpr double kDeviations = 5;
   return std::max(kClear_radps, kDeviations * std::sqrt(noise_ / static_cast<double>(window_.size())));
+}
+
+/// Returns the turn in the window against the standing before, rad, and its rate.
+std::pair<double, double> SpotTurns::turn_in_window() const {
+  double turned_rad = 0;
+  double seconds = 0;
+  for (std::size_t i = 1; i < window_.size(); ++i) {
+    const double step_s = seconds_between(window_[i - 1].stamp, window_[i].stamp);
+    turned_rad += (window_[i].yaw_rate_radps - calm_) * step_s;
+    seconds += step_s;
+  }
+  return {turned_rad, seconds > 0 ? turned_rad / seconds : 0};
+}
+
+/// What was taken for standing was a turn: it has ended, and nothing else turns for so long.
+void SpotTurns::forget_calm() {
+  calm_count_ = 0;
+  turns_ = false;
+  missed_rad_ = 0;
 }
 
 OdometrySample SpotTurns::judged(OdometrySample sample) {
@@ -47,14 +67,17 @@ OdometrySample SpotTurns::judged(OdometrySample sample) {
     window_.pop_front();
   }
   if (calm_count_ < kFewestCalm || step_s <= 0) return sample;
-  double turned_rad = 0;
-  for (const OdometrySample& reading : window_) turned_rad += (reading.yaw_rate_radps - calm_) * step_s;
-  const double rate = turned_rad / (step_s * static_cast<double>(window_.size()));
+  const auto [turned_rad, rate] = turn_in_window();
   const bool turned = turns_;
   turns_ = std::abs(rate) > (turned ? 0.5 : 1) * clear_radps();
+  if (turns_ && !turned) turns_since_ = sample.stamp;
+  if (turns_ && seconds_between(turns_since_, sample.stamp) > kLongestTurn_s) forget_calm();
   sample.turns_on_spot = turns_;
   if (turns_ && !turned) missed_rad_ = turned_rad;
-  if (turns_ && turned) sample.yaw_rate_radps += std::exchange(missed_rad_, 0) / step_s;
+  // It counts in the interval before it and in the next one, each by half.
+  const double usual_s =
+      seconds_between(window_.front().stamp, sample.stamp) / static_cast<double>(window_.size() - 1);
+  if (turns_ && turned) sample.yaw_rate_radps += std::exchange(missed_rad_, 0) / (0.5 * (step_s + usual_s));
   return sample;
 }
 

@@ -213,9 +213,17 @@ void Window::add_way(const MeasuredWay& way) {
   predictor_.settle(graph_, first);
 }
 
+ClaimedAccuracies Window::with_kept(int source, ClaimedAccuracies claimed) const {
+  const auto kept = kept_claims_.find(source);
+  if (kept == kept_claims_.end()) return claimed;
+  for (std::size_t kind = 0; kind < claimed.median_m.size(); ++kind)
+    if (kept->second.median_m[kind]) claimed.median_m[kind] = kept->second.median_m[kind];
+  return claimed;
+}
+
 void Window::add_fix(const Fix& fix, const ClaimedAccuracies& claimed) {
   inputs_.add(ClaimedFix{fix, claimed});
-  builder_.set_claimed(fix.source, claimed);
+  builder_.set_claimed(fix.source, with_kept(fix.source, claimed));
   const auto first = static_cast<VertexIndex>(graph_.vertex_count());
   predictor_.mark(graph_);
   extend({.stamps = {}, .poses = {}, .intervals = {}, .fixes = std::span(&fix, 1), .fix_nodes = {}});

@@ -4,10 +4,12 @@
 /// It is built by the same builder as the graph of a whole drive, with the same plugins and settings.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -29,6 +31,10 @@ class Window {
          const drive::FusionSettings& settings, const TypeRegistry& registry);
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
+
+  /// Keeps the medians of what receivers claimed, whatever they claim from now on: the noise holds for those. Call it
+  /// before begin(). @param claimed by Fix::source
+  void keep_claimed(std::map<int, ClaimedAccuracies> claimed) { kept_claims_ = std::move(claimed); }
 
   /// Begins with a stretch of at least two nodes and the readings so far, and finds the minimum from its poses.
   /// @returns false if there is none
@@ -82,6 +88,7 @@ class Window {
   void add_nodes(const PlacedStretch& stretch, std::size_t first, std::size_t last);
   void give_reading(std::size_t sensor, Stamp stamp, std::span<const double> values);
   void extend(const drive::DrivePart& part);
+  [[nodiscard]] ClaimedAccuracies with_kept(int source, ClaimedAccuracies claimed) const;
 
   std::vector<drive::PreparedSensor> sensors_;  // each with the readings that wait for the next part
   const TypeRegistry& registry_;
@@ -91,6 +98,7 @@ class Window {
   WindowSolver solver_;
   Predictor predictor_;
   WindowInputs inputs_;
+  std::map<int, ClaimedAccuracies> kept_claims_;
   bool readings_wait_ = false;
   std::optional<VertexId> height_{};  ///< of the newest height state
 };

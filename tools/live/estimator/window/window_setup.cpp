@@ -52,7 +52,9 @@ std::unique_ptr<Window> make_window(const drive::DriveDescription& description, 
                                     const TypeRegistry& registry) {
   drive::DriveFacts facts = facts_of(description, setup, frame);
   facts.first_pose = std::move(first_pose);
-  return std::make_unique<Window>(facts, sensors_of(description), setup.settings, registry);
+  auto window = std::make_unique<Window>(facts, sensors_of(description), setup.settings, registry);
+  window->keep_claimed(setup.claimed);
+  return window;
 }
 
 }  // namespace waymark::live

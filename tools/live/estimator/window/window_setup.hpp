@@ -1,10 +1,12 @@
 /// The window of a drive's description: which sources it has, and what its plugins know of them.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include <waymark/core/drive/modeling.hpp>
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/tools/drive/description/drive_description.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
@@ -19,6 +21,9 @@ struct FusionSetup {
   /// how late the fixes of each receiver are beside their stated delay, about which a delay is linearised, s;
   /// empty: 0
   std::vector<double> delays_s{};
+  /// what each receiver had claimed in the drive that the noise is from. The noise holds for these claims: kinds of
+  /// solutions that were among them keep their medians. Empty: the noise is from no drive
+  std::map<int, ClaimedAccuracies> claimed{};
 };
 
 /// Returns a window without nodes. @param registry must outlive it
