@@ -113,6 +113,7 @@ set(WAYMARK_PUBLIC_HEADERS
   tools/drive/model/motion_runs.hpp
   tools/drive/estimation/clock_drift.hpp
   tools/drive/estimation/noise.hpp
+  tools/drive/estimation/speed_slip.hpp
   tools/drive/model/place.hpp
   tools/drive/model/poses_at_fixes.hpp
   tools/drive/nodes/gate.hpp

@@ -98,20 +98,6 @@ std::vector<std::optional<TimeOffset>> found_in(const DelayRound& round, const F
   return found;
 }
 
-/// Makes speeds what they are if they were read wrong in proportion to the acceleration, by the slip times it.
-void remove_slip(double slip_per_mps2, PlacedDrive& drive) {
-  std::vector<Interval>& intervals = drive.timeline.intervals;
-  const std::vector<Interval> read = intervals;
-  for (std::size_t i = 1; i + 1 < read.size(); ++i) {
-    const Interval& before = read[i - 1];
-    const Interval& after = read[i + 1];
-    if (before.bridged || read[i].bridged || after.bridged) continue;
-    const double apart_s = read[i].dt_s + 0.5 * (before.dt_s + after.dt_s);
-    const double acceleration_mps2 = (after.speed_mps - before.speed_mps) / apart_s;
-    intervals[i].speed_mps = read[i].speed_mps * (1 - slip_per_mps2 * acceleration_mps2);
-  }
-}
-
 }  // namespace
 
 struct TimeOffsetSearch::Minimum {
@@ -168,6 +154,7 @@ void TimeOffsetSearch::admit_slip(const FusionSettings& settings, Minimum minimu
         const double per_slip_s = 0.5 * (more.round.offset(g) - less.round.offset(g));
         offsets[g]->value_s = minimum.round.offset(g) + per_slip_s * step;
         offsets[g]->sigma_s = std::hypot(offsets[g]->sigma_s, per_slip_s / std::sqrt(curvature));
+        offsets[g]->slip = {slip * kUsual_per_mps2, kUsual_per_mps2 / std::sqrt(curvature)};
       }
       return;
     }

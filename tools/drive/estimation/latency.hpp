@@ -14,16 +14,17 @@
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/drive/estimation/coarse.hpp>
+#include <waymark/tools/drive/estimation/speed_slip.hpp>
 #include <waymark/tools/drive/model/place.hpp>
 
 namespace waymark::drive {
 
-/// What a drive says about the delay of its fixes. Where a delay seems probable, the speeds may be wrong in proportion to
-/// the acceleration instead (tyres slip as they pull and brake, by 0.5 % per m/s^2): a way that is d late in speed v is
-/// v d behind, and that of such speeds by half of the slip times v^2, which is the same where v hardly varies.
+/// What a drive says about the delay of its fixes. Where there seems to be one, the speeds may slip instead, with a prior
+/// of the usual size.
 struct TimeOffset {
   double value_s = 0;        ///< posterior mean
   double sigma_s = 0;        ///< posterior
+  SpeedSlip slip{};          ///< where there seems to be a delay
   double prior_sigma_s = 0;  ///< 0: the modeling has no option time_offset_sigma; the odds are then 0
 
   /// Returns the odds that there is no delay, against one that is drawn from its prior: the ratio of

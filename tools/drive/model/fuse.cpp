@@ -244,6 +244,13 @@ std::string words_for_drift(const ClockDrift& drift, const PreparedDrive& drive)
       std::abs(drift.rate) * seconds_between(drive.fixes.front().stamp, drive.fixes.back().stamp));
 }
 
+std::string words_for_slip(const SpeedSlip& slip) {
+  return fmt::format(
+      "the speeds of the odometry are wrong by {:.2f} +- {:.2f} % for each m/s^2 of acceleration, as those of wheels that "
+      "slip when they pull and brake; they are taken without that",
+      100 * slip.per_mps2, 100 * slip.sigma);
+}
+
 std::string words_for_poor_odometry(const PlacedDrive& placed) {
   return of_several(placed) +
          "the odometry does not move as the fixes do (a gyro that is dead, wheels that slip, a wrong scale): it is "
@@ -291,6 +298,8 @@ ModeledDrive Fusion::estimated_from(PlacedDrive placed, const FusionSettings& se
                             ? leave_out_unseen(settings, decision, modeled)
                             : leave_out_improbable(offsets, settings, decision, modeled);
   if (left_out) (void)estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
+  for (const std::optional<TimeOffset>& offset : offsets)
+    if (offset && offset->slip.is_probable()) modeled.slip = offset->slip;
   modeled.odometry_late_s =
       left_out ? 0 : late_odometry(offsets, drive_, settings, groups_of(modeled.placed, decision));
   modeled.decision = std::move(decision);
@@ -366,8 +375,28 @@ ModeledDrive Fusion::estimated(const FusionSettings& settings) {
 }
 
 ModeledDrive Fusion::model(const FusionSettings& settings) {
+  constexpr double kGain = 1;     // the slip is three of its own deviations
+  constexpr int kMostRounds = 8;  // what the noise hid is found in steps
   refuse_misreading(placed(decision_on(settings)));
   ModeledDrive modeled = searched(settings);
+  const bool may_be_freed = drive_.relative.empty() && !modeled.noise.parameters.empty();
+  std::optional<PreparedDrive> freed;
+  SpeedSlip slip;
+  for (int round = 0; round < kMostRounds && may_be_freed && modeled.slip.is_probable(); ++round) {
+    const SpeedSlip together{slip.per_mps2 + modeled.slip.per_mps2, modeled.slip.sigma};
+    PreparedDrive moved = without_slip(drive_, together);
+    ModeledDrive other = Fusion(moved, registry_, between_).searched(settings);
+    if (!(modeled.noise.cost - other.noise.cost > kGain)) break;
+    modeled = std::move(other);
+    freed = std::move(moved);
+    slip = together;
+  }
+  if (!freed) return completed(std::move(modeled), settings);
+  modeled.placed.warnings.push_back(words_for_slip(slip));
+  return Fusion(*freed, registry_, between_).completed(std::move(modeled), settings);
+}
+
+ModeledDrive Fusion::completed(ModeledDrive modeled, const FusionSettings& settings) {
   // An antenna that is elsewhere looks like a clock that is wrong.
   if (const std::optional<AntennaPlace> antenna = antenna_of(modeled, drive_, registry_, between_)) {
     modeled.placed.warnings.push_back(words_for_antenna(*antenna, receiver_name(modeled.placed, 0)));

@@ -36,6 +36,7 @@
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/drive/estimation/clock_drift.hpp>
 #include <waymark/tools/drive/estimation/noise.hpp>
+#include <waymark/tools/drive/estimation/speed_slip.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/model/minimize.hpp>
 #include <waymark/tools/drive/model/place.hpp>
@@ -51,6 +52,7 @@ struct ModeledDrive {
   /// by which the fixes seem to come before they were measured: the stamps of the odometry are late. 0: they are not
   double odometry_late_s = 0;
   ClockDrift clock_drift{};  ///< of which the odometry was freed
+  SpeedSlip slip{};          ///< that its speeds seem to have
   std::vector<std::string> sensor_warnings;
   /// groups of receivers whose fixes are taken as not late; an only receiver is ""
   std::vector<std::string> without_delay;
@@ -91,8 +93,8 @@ class Fusion {
   /// Does the steps before the graph: placing, delays and noise. The document is empty. A clock that drifts is kept.
   /// @throws errors of the steps
   [[nodiscard]] ModeledDrive estimated(const FusionSettings& settings);
-  /// Does the steps up to the graph. An odometry whose stamps seem to be late is told; one whose clock drifts is
-  /// freed of that (clock_drift.hpp), and told.
+  /// Does the steps up to the graph. An odometry whose stamps seem to be late is told; one whose clock drifts or whose
+  /// speeds slip is freed of that (clock_drift.hpp, speed_slip.hpp), and told.
   /// @throws InputError if the odometry or the positions were read in a wrong unit or sense (misreading.hpp);
   /// errors of the steps
   [[nodiscard]] ModeledDrive model(const FusionSettings& settings);
@@ -114,6 +116,8 @@ class Fusion {
   [[nodiscard]] const PlacedDrive& placed(const FusionSettings& settings);
   /// As estimated(), without the deviations of the noise.
   [[nodiscard]] ModeledDrive searched(const FusionSettings& settings);
+  /// Does the steps from there to the graph.
+  [[nodiscard]] ModeledDrive completed(ModeledDrive modeled, const FusionSettings& settings);
   void add_deviations(ModeledDrive& modeled) const;
   /// Returns the drive with the odometry on the clock of the fixes, if its own one drifts and that is more probable. A
   /// drift that the noise hid is found in steps.

@@ -1,0 +1,40 @@
+#include <waymark/tools/drive/estimation/speed_slip.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace waymark::drive {
+
+void remove_slip(double per_mps2, PlacedDrive& drive) {
+  std::vector<Interval>& intervals = drive.timeline.intervals;
+  const std::vector<Interval> read = intervals;
+  for (std::size_t i = 1; i + 1 < read.size(); ++i) {
+    const Interval& before = read[i - 1];
+    const Interval& after = read[i + 1];
+    if (before.bridged || read[i].bridged || after.bridged) continue;
+    const double apart_s = read[i].dt_s + 0.5 * (before.dt_s + after.dt_s);
+    const double acceleration_mps2 = (after.speed_mps - before.speed_mps) / apart_s;
+    intervals[i].speed_mps = read[i].speed_mps * (1 - per_mps2 * acceleration_mps2);
+  }
+}
+
+PreparedDrive without_slip(PreparedDrive drive, const SpeedSlip& slip) {
+  constexpr double kHalf_s = 0.5;
+  constexpr double kGap_s = 3;
+  const std::vector<OdometrySample> read = drive.odometry;
+  std::size_t first = 0;
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    while (seconds_between(read[first].stamp, read[i].stamp) > kHalf_s && first + 1 < i) ++first;
+    while (last + 1 < read.size() && seconds_between(read[i].stamp, read[last].stamp) < kHalf_s) ++last;
+    const double apart_s = seconds_between(read[first].stamp, read[last].stamp);
+    if (!(apart_s > 0) || apart_s > kGap_s) continue;
+    const double acceleration_mps2 = (read[last].speed_mps - read[first].speed_mps) / apart_s;
+    if (std::isfinite(acceleration_mps2))
+      drive.odometry[i].speed_mps = read[i].speed_mps * (1 - slip.per_mps2 * acceleration_mps2);
+  }
+  return drive;
+}
+
+}  // namespace waymark::drive
