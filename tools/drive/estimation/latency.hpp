@@ -24,8 +24,8 @@ namespace waymark::drive {
 struct TimeOffset {
   double value_s = 0;        ///< posterior mean
   double sigma_s = 0;        ///< posterior
-  SpeedSlip slip{};          ///< where there seems to be a delay
   double prior_sigma_s = 0;  ///< 0: the modeling has no option time_offset_sigma; the odds are then 0
+  SpeedSlip slip{};          ///< where there seems to be a delay
 
   /// Returns the odds that there is no delay, against one that is drawn from its prior: the ratio of
   /// posterior and prior density at 0 (Dickey, "The weighted likelihood ratio", Annals of Mathematical

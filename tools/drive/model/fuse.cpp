@@ -391,12 +391,12 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
     freed = std::move(moved);
     slip = together;
   }
-  if (!freed) return completed(std::move(modeled), settings);
-  modeled.placed.warnings.push_back(words_for_slip(slip));
-  return Fusion(*freed, registry_, between_).completed(std::move(modeled), settings);
+  if (!freed) return completed(std::move(modeled), settings, {});
+  return Fusion(*freed, registry_, between_).completed(std::move(modeled), settings, words_for_slip(slip));
 }
 
-ModeledDrive Fusion::completed(ModeledDrive modeled, const FusionSettings& settings) {
+ModeledDrive Fusion::completed(ModeledDrive modeled, const FusionSettings& settings,
+                               const std::string& told) {
   // An antenna that is elsewhere looks like a clock that is wrong.
   if (const std::optional<AntennaPlace> antenna = antenna_of(modeled, drive_, registry_, between_)) {
     modeled.placed.warnings.push_back(words_for_antenna(*antenna, receiver_name(modeled.placed, 0)));
@@ -404,6 +404,7 @@ ModeledDrive Fusion::completed(ModeledDrive modeled, const FusionSettings& setti
   } else {
     modeled = on_clock_of_fixes(std::move(modeled), settings);
   }
+  if (!told.empty()) modeled.placed.warnings.push_back(told);
   if (modeled.odometry_late_s > 0)
     modeled.placed.warnings.push_back(words_for_late_odometry(modeled.odometry_late_s));
   add_deviations(modeled);

@@ -116,8 +116,9 @@ class Fusion {
   [[nodiscard]] const PlacedDrive& placed(const FusionSettings& settings);
   /// As estimated(), without the deviations of the noise.
   [[nodiscard]] ModeledDrive searched(const FusionSettings& settings);
-  /// Does the steps from there to the graph.
-  [[nodiscard]] ModeledDrive completed(ModeledDrive modeled, const FusionSettings& settings);
+  /// Does the steps from there to the graph. @param told a further warning
+  [[nodiscard]] ModeledDrive completed(ModeledDrive modeled, const FusionSettings& settings,
+                                       const std::string& told);
   void add_deviations(ModeledDrive& modeled) const;
   /// Returns the drive with the odometry on the clock of the fixes, if its own one drifts and that is more probable. A
   /// drift that the noise hid is found in steps.
