@@ -105,4 +105,16 @@ TEST_CASE("csv start: 'where' reads one of several kinds of rows that differ in 
   CHECK(throttle.readings.at(1, 0) == 6.5);
 }
 
+TEST_CASE("csv start: the units of a header count where columns and kinds of rows are given by number") {
+  LogRequest motion = csv_request(StreamKind::odometry);
+  motion.readings = odometry_channels();
+  motion.where = RowFilter{"1", "ODO", true};
+  motion.columns = {{"time", {"2", "", ""}}, {"speed", {"3", "", ""}}};
+  const LogData read =
+      read_csv("kind,time [ms],speed [km/h]\nODO,1000,36\nFIX,1500,1\nODO,2000,72\n", motion);
+  REQUIRE(read.readings.size() == 2);
+  CHECK(read.readings.at(1, 0) == 20);
+  CHECK(seconds_between(read.readings.stamps[0], read.readings.stamps[1]) == Approx(1));
+}
+
 }  // namespace csv_start_test

@@ -291,6 +291,21 @@ void mark_undone(const ReckonedFixes& receiver, std::size_t first, std::size_t l
   for (std::size_t j = is_away_wrong ? first : first + 1; j < last; j += 2) jumps[j].undone = true;
 }
 
+/// Judges the jumps of one kind, in order.
+void judge(const ReckonedFixes& receiver, std::vector<Jump>& jumps) {
+  const std::size_t count = receiver.fixes.size();
+  for (std::size_t j = 0; j < jumps.size(); ++j) {
+    jumps[j].end = j + 1 < jumps.size() ? jumps[j + 1].settled : count;
+    jumps[j].stays_s = seconds_from(receiver, jumps[j].first, std::min(jumps[j].end, count - 1));
+  }
+  for (std::size_t first = 0; first < jumps.size();) {
+    std::size_t last = first;
+    while (last + 1 < jumps.size() && undoes(jumps[last + 1], jumps[last])) ++last;
+    mark_undone(receiver, first, last, jumps);
+    first = last + 1;
+  }
+}
+
 /// Tells whether the odometry turns at most bends of the fixes, or they have few. One with a dead gyro does not, and
 /// the fixes jump at each bend.
 bool turns_with_fixes(const ReckonedFixes& receiver) {
@@ -321,22 +336,14 @@ bool turns_with_fixes(const ReckonedFixes& receiver) {
 
 std::vector<Jump> jumps_of(const ReckonedFixes& receiver) {
   if (!turns_with_fixes(receiver)) return {};
-  const std::size_t count = receiver.fixes.size();
   std::vector<Jump> jumps;
-  for (std::size_t i = 1; i < count; ++i)
+  for (std::size_t i = 1; i < receiver.fixes.size(); ++i)
     if (const std::optional<Jump> jump = jump_to(receiver, i)) jumps.push_back(*jump);
   add_others(receiver, slides_of(receiver), jumps);
-  add_others(receiver, precise_jumps_of(receiver), jumps);
-  for (std::size_t j = 0; j < jumps.size(); ++j) {
-    jumps[j].end = j + 1 < jumps.size() ? jumps[j + 1].settled : count;
-    jumps[j].stays_s = seconds_from(receiver, jumps[j].first, std::min(jumps[j].end, count - 1));
-  }
-  for (std::size_t first = 0; first < jumps.size();) {
-    std::size_t last = first;
-    while (last + 1 < jumps.size() && undoes(jumps[last + 1], jumps[last])) ++last;
-    mark_undone(receiver, first, last, jumps);
-    first = last + 1;
-  }
+  judge(receiver, jumps);
+  std::vector<Jump> precise = precise_jumps_of(receiver);
+  judge(receiver, precise);
+  add_others(receiver, precise, jumps);
   return jumps;
 }
 

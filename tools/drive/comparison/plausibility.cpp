@@ -291,7 +291,9 @@ std::vector<std::string> jumps_in_words(const ReckonedFixes& receiver) {
   std::vector<std::string> sentences;
   const std::vector<Jump> jumps = jumps_of(receiver);
   for (std::size_t i = 0; i < jumps.size(); ++i) {
-    const bool jumps_back = i > 0 && jumps[i - 1].undone;
+    const bool jumps_back = std::any_of(jumps.begin(), jumps.end(), [&](const Jump& before) {
+      return before.undone && before.end == jumps[i].settled;
+    });
     const bool at_once = jumps[i].usual_m == 0;  // what takes time and stays may be the odometry's
     const bool is_told = at_once && (jumps[i].by.norm() >= kLarge_m || jumps[i].claimed_m > 0);
     if (!jumps_back && (jumps[i].undone || is_told)) sentences.push_back(in_words(jumps[i], receiver));

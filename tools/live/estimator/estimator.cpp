@@ -217,7 +217,10 @@ void Estimator::work() {
     if (const auto* odometry = std::get_if<OdometrySample>(&*sample)) {
       hear(0, *odometry);
     } else if (const auto* further = std::get_if<FurtherOdometry>(&*sample)) {
-      hear(further->source, {further->stamp, further->speed_mps, further->yaw_rate_radps});
+      hear(further->source, {.stamp = further->stamp,
+                             .speed_mps = further->speed_mps,
+                             .yaw_rate_radps = further->yaw_rate_radps,
+                             .turn_variance_per_s = further->turn_variance_per_s});
     } else {
       pending_.push_back(std::move(*sample));
       if (!reckoning_.empty() && stamp_of(pending_.back()) <= now_) use_pending();

@@ -88,6 +88,7 @@ Arrival Intake::take_odometry(OdometrySample sample) {
   insert(sample, 0);
   if (ahead_s > 0) interval_s_ = ahead_s;
   newest_ = newest_ ? std::max(*newest_, sample.stamp) : sample.stamp;
+  newest_of_first_ = newest_of_first_ ? std::max(*newest_of_first_, sample.stamp) : sample.stamp;
   return Arrival::taken;
 }
 
@@ -95,6 +96,7 @@ Arrival Intake::take_odometry(OdometrySample sample) {
 Arrival Intake::suspend(const OdometrySample& sample) {
   if (!suspended_.empty()) {
     const double step_s = seconds_between(suspended_.back().stamp, sample.stamp);
+    if (step_s <= 0 && is_plausible(step_s)) return step_s == 0 ? Arrival::duplicate : Arrival::late;
     if (step_s <= 0 || step_s > longest_gap_s_) suspended_.clear();
   }
   if (suspended_.empty()) told_s_.reset();
@@ -122,7 +124,8 @@ void Intake::hear(const GeodeticFix& fix) {
   const std::optional<double> usual_s = relation_.usual_lateness_s(fix.source);
   if (suspended_.empty()) return relation_.take_fix(fix.source, fix.stamp, *newest_);
   if (told_s_ || !usual_s) return;
-  const double step_s = seconds_between(*newest_, suspended_.front().stamp) - interval_s_;
+  const double step_s =
+      seconds_between(newest_of_first_.value_or(*newest_), suspended_.front().stamp) - interval_s_;
   const double late_s = seconds_between(fix.stamp, suspended_.back().stamp) - step_s - *usual_s;
   const bool alone = std::abs(late_s) < kLikely * std::abs(step_s);
   told_s_ = alone ? -step_s + (late_s < -kSilence_s ? -late_s : 0) : 0;
@@ -146,6 +149,7 @@ void Intake::take_suspended(double moved_s) {
     kept.stamp.nanoseconds += moved_ns;
     insert(kept, 0);
     newest_ = std::max(*newest_, kept.stamp);
+    newest_of_first_ = kept.stamp;
   }
   relation_.take_odometry();
 }
@@ -158,7 +162,7 @@ void Intake::begin_at_suspended() {
   released_.reset();
   released_odometry_.reset();
   relation_.forget();
-  newest_ = suspended_.back().stamp;
+  newest_ = newest_of_first_ = suspended_.back().stamp;
   for (const OdometrySample& kept : std::exchange(suspended_, {})) insert(kept, 0);
 }
 
@@ -172,7 +176,7 @@ void Intake::move_to_fixes(double moved_s) {
   released_.reset();
   released_odometry_.reset();
   relation_.forget();
-  newest_ = jump_->to;
+  newest_ = newest_of_first_ = jump_->to;
 }
 
 void Intake::finish() {
@@ -183,9 +187,16 @@ void Intake::finish() {
 
 // A further odometry keeps the time going while the first one is silent, but no stamp of it moves the clock by
 // more than a gap.
-Arrival Intake::take_further(const FurtherOdometry& sample) {
+Arrival Intake::take_further(FurtherOdometry sample) {
   if (newest_) {
-    const double ahead_s = seconds_between(*newest_, sample.stamp);
+    double ahead_s = seconds_between(*newest_, sample.stamp);
+    Stamp moved = sample.stamp;
+    moved.nanoseconds += moved_ns_;
+    if (!is_plausible(ahead_s) &&
+        is_plausible(seconds_between(*newest_, moved))) {  // it has the clock of the first one
+      sample.stamp = moved;
+      ahead_s = seconds_between(*newest_, moved);
+    }
     if (ahead_s > longest_gap_s_) return Arrival::future;
     if (ahead_s <= -std::max(1.0, reorder_s_)) return Arrival::late;
   }

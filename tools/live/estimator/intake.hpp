@@ -34,6 +34,7 @@ struct FurtherOdometry {
   std::size_t source = 1;  ///< index in DriveDescription::odometry
   double speed_mps = 0;
   double yaw_rate_radps = 0;
+  double turn_variance_per_s = 0;  ///< as OdometrySample::turn_variance_per_s
 };
 
 using Sample = std::variant<OdometrySample, GeodeticFix, SensorReading, FurtherOdometry>;
@@ -90,7 +91,7 @@ class Intake {
   void begin_at_suspended();
   void take_suspended(double moved_s);
   void move_to_fixes(double moved_s);
-  Arrival take_further(const FurtherOdometry& sample);
+  Arrival take_further(FurtherOdometry sample);
   void insert(Sample sample, std::size_t order);
   [[nodiscard]] bool is_duplicate(const Sample& sample, std::size_t order) const;
 
@@ -98,7 +99,8 @@ class Intake {
   double longest_gap_s_;
   std::deque<Waiting> waiting_;  // by stamp and order
   std::deque<Sample> late_;
-  std::optional<Stamp> newest_;    // of the odometry
+  std::optional<Stamp> newest_;  // of the odometries
+  std::optional<Stamp> newest_of_first_;
   std::optional<Stamp> released_;  // of the last one
   std::optional<Stamp> released_odometry_;
   std::vector<OdometrySample> suspended_;

@@ -60,7 +60,8 @@ std::vector<Sample> Channel::pause(const drive::Projection* projection) {
 
 Sample Channel::labelled(const OdometrySample& sample) const {
   if (odometry_ == 0) return sample;
-  return FurtherOdometry{sample.stamp, odometry_, sample.speed_mps, sample.yaw_rate_radps};
+  return FurtherOdometry{sample.stamp, odometry_, sample.speed_mps, sample.yaw_rate_radps,
+                         sample.turn_variance_per_s};
 }
 
 std::vector<Sample> Channel::collect(const drive::Projection* projection) {

@@ -17,7 +17,9 @@ class OdometryStream {
  public:
   /// @param parts how many streams there are
   OdometryStream(std::size_t parts, drive::OdometryAssembly how, double gap_s)
-      : parts_(parts), how_(how), gap_s_(gap_s) {}
+      : parts_(parts), how_(how), gap_s_(gap_s) {
+    how_.goes_on = true;
+  }
 
   /// Takes the next readings of a part. @returns the samples that are ready
   [[nodiscard]] std::vector<OdometrySample> take(std::size_t part, const SensorTable& rows);

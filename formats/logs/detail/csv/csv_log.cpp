@@ -70,11 +70,16 @@ class CsvDecoder final : public LineDecoder {
     const std::optional<RowFilter>& where = request().where;
     const std::size_t number = where ? number_of(where->column) : 0;
     const bool by_number =
+        !request().columns.empty() &&
         std::all_of(request().columns.begin(), request().columns.end(),
                     [](const auto& column) { return number_of(column.second.column) > 0; });
     if (number == 0 || !by_number) return false;
     std::vector<std::string_view> fields;
     if (!split_fields(line, separator_ != 0 ? separator_ : separator_of(line), fields)) return false;
+    const char separator = separator_ != 0 ? separator_ : separator_of(line);
+    const bool has_values = std::any_of(
+        fields.begin(), fields.end(), [&](std::string_view field) { return holds_value(field, separator); });
+    if (!has_values) return false;  // a header, whose units count
     return fields.size() < number || (fields[number - 1] == where->value) != where->equal;
   }
   /// Returns the number of a column that is given by number; 0 for a name.

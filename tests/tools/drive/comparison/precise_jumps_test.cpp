@@ -1,5 +1,6 @@
 // A phase solution with wrong ambiguities keeps its claim of centimetres; its jump is found, whatever the odometry's
 // scale and heading, and nothing else is taken for one.
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -71,6 +72,18 @@ TEST_CASE("precise jumps: the fixes between are wrong, those of the rest are not
   CHECK(jumps[0].undone);
   CHECK(jumps[0].end == 200);
   CHECK_FALSE(jumps[1].undone);
+}
+
+TEST_CASE("precise jumps: one within the time of a large jump and back leaves those a pair") {
+  ReckonedFixes wrong = receiver(0);
+  move(wrong, 100, 200, {60, 0});
+  move(wrong, 150, 400, kWrong_m);
+  const std::vector<Jump> jumps = jumps_of(wrong);
+  const auto large =
+      std::find_if(jumps.begin(), jumps.end(), [](const Jump& jump) { return jump.first == 100; });
+  REQUIRE(large != jumps.end());
+  CHECK(large->undone);
+  CHECK(large->end == 200);
 }
 
 TEST_CASE("precise jumps: an antenna whose place is not stated makes none in sharp turns") {

@@ -541,7 +541,7 @@ TEST_CASE("coarse: of a drive that is parked for hours, what drives and 20 minut
   drive.odometry.resize(static_cast<std::size_t>(half));
   constexpr double kParked_s = 8 * 3600;
   const Stamp stop = drive.odometry.back().stamp;
-  for (double t = 1; t < kParked_s; ++t) drive.odometry.push_back({.stamp = stop.later(t)});
+  for (double t = 0.1; t < kParked_s; t += 0.4) drive.odometry.push_back({.stamp = stop.later(t)});
   for (auto i = half; i < std::ssize(moving.odometry); ++i) {
     drive.odometry.push_back(moving.odometry[static_cast<std::size_t>(i)]);
     drive.odometry.back().stamp = drive.odometry.back().stamp.later(kParked_s);

@@ -104,10 +104,11 @@ std::vector<Stamp> stamps_near_end(const WayTravelled& way, Stamp end, double st
   return stamps;
 }
 
-/// Carries the first and the last angle on.
-void add_ends(const WayTravelled& way, double step_s, TimeSeries& angle) {
+/// Carries the first angle back, and the last one on if the log ends there.
+void add_ends(const WayTravelled& way, double step_s, bool goes_on, TimeSeries& angle) {
   std::vector<Stamp> before = stamps_near_end(way, angle.stamps.front(), -step_s);
-  const std::vector<Stamp> after = stamps_near_end(way, angle.stamps.back(), step_s);
+  std::vector<Stamp> after;
+  if (!goes_on) after = stamps_near_end(way, angle.stamps.back(), step_s);
   std::reverse(before.begin(), before.end());
   angle.stamps.insert(angle.stamps.begin(), before.begin(), before.end());
   angle.values.insert(angle.values.begin(), before.size(), angle.values.front());
@@ -150,7 +151,7 @@ Direction turns_of_heading(const TimeSeries& heading) {
   return result;
 }
 
-Direction turns_of_course(const TimeSeries& course, const TimeSeries& speed, double gap_s) {
+Direction turns_of_course(const TimeSeries& course, const TimeSeries& speed, double gap_s, bool goes_on) {
   const WayTravelled way(speed, gap_s);
   TimeSeries driving;
   std::vector<double> speeds;
@@ -173,7 +174,7 @@ Direction turns_of_course(const TimeSeries& course, const TimeSeries& speed, dou
       add_slow_stretch(way, driving.stamps[i], driving.values[i], step_s, result.angle);
     add(result.angle, driving.stamps[i], driving.values[i]);
   }
-  if (step_s > 0) add_ends(way, step_s, result.angle);
+  if (step_s > 0) add_ends(way, step_s, goes_on, result.angle);
   return result;
 }
 

@@ -42,6 +42,8 @@ struct LeapsAtRest {
 /// by more than half a round there, and none turns that stands. So it is over the first and the last 2 m of the
 /// log. Elsewhere the source is silent.
 /// @param course rad, counter-clockwise @param speed m/s @param gap_s as above
-[[nodiscard]] Direction turns_of_course(const TimeSeries& course, const TimeSeries& speed, double gap_s);
+/// @param goes_on more readings follow, so that the last ones are no end of the log
+[[nodiscard]] Direction turns_of_course(const TimeSeries& course, const TimeSeries& speed, double gap_s,
+                                        bool goes_on = false);
 
 }  // namespace waymark::drive

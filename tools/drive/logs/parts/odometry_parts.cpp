@@ -271,7 +271,8 @@ class Assembler {
           "that measures all the time by 'yaw_rate_from' (channels found: {})",
           leaps->leaps, leaps->largest_rad / kDegree, present()));
     }
-    Direction direction = of_motion ? turns_of_course(readings, speed_, gap_s_) : turns_of_heading(readings);
+    Direction direction =
+        of_motion ? turns_of_course(readings, speed_, gap_s_, how_.goes_on) : turns_of_heading(readings);
     turn_variance_ = std::move(direction.turn_variance_per_s);
     return std::move(direction.angle);
   }

@@ -43,6 +43,7 @@ struct OdometryAssembly {
   double metres_per_tick = 0;
   double tick_range = 0;           ///< here counters restart from 0; not stated: never
   bool heading_is_course = false;  ///< AssembledOdometry::heading_is_course of an earlier stretch
+  bool goes_on = false;            ///< more readings follow: a course is not carried on beyond its last one
 };
 
 /// The channels of one log.
