@@ -162,12 +162,20 @@ void TimeOffsetSearch::admit_slip(const FusionSettings& settings, Minimum minimu
   }
 }
 
-std::vector<std::optional<TimeOffset>> TimeOffsetSearch::find(const FusionSettings& settings,
-                                                              PlacedDrive& placed) {
+TimeOffsetSearch::Minimum TimeOffsetSearch::reach(const FusionSettings& settings, PlacedDrive& placed) {
   coarse_.drive.time_offsets_s = placed.time_offsets_s;
   Minimum minimum = converge(settings, coarse_);
-  if (!minimum.round.estimates()) return std::vector<std::optional<TimeOffset>>(minimum.round.groups.size());
   placed.time_offsets_s = coarse_.drive.time_offsets_s;
+  return minimum;
+}
+
+void TimeOffsetSearch::move(const FusionSettings& settings, PlacedDrive& placed) {
+  (void)reach(settings, placed);
+}
+
+std::vector<std::optional<TimeOffset>> TimeOffsetSearch::find(const FusionSettings& settings,
+                                                              PlacedDrive& placed) {
+  Minimum minimum = reach(settings, placed);
   std::vector<std::optional<TimeOffset>> found = found_in(minimum.round, settings, registry_);
   const bool seems_late = std::any_of(
       found.begin(), found.end(), [](const auto& offset) { return offset && offset->odds_of_none() <= 1; });

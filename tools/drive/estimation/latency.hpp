@@ -43,6 +43,8 @@ class TimeOffsetSearch {
   TimeOffsetSearch(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                    const TypeRegistry& registry, const std::function<void()>& between = {});
 
+  /// Finds the offsets alone, and not what the drive says of them. Throws as find().
+  void move(const FusionSettings& settings, PlacedDrive& placed);
   /// Nothing changes if the settings estimate no time offset.
   /// @param settings from decided() @param placed the drive of the constructor
   /// @throws UsageError for an unknown modeling or option; errors of the plugins
@@ -52,6 +54,8 @@ class TimeOffsetSearch {
  private:
   struct Minimum;
 
+  /// As converge(), for the drive of the constructor, whose offsets are those of `placed` before and after.
+  Minimum reach(const FusionSettings& settings, PlacedDrive& placed);
   /// Fuses a drive until its offsets no longer move, and leaves them and its poses there.
   [[nodiscard]] Minimum converge(const FusionSettings& settings, CoarseDrive& coarse) const;
   /// Makes what is known of the offsets what is known if the speeds may slip.

@@ -89,8 +89,8 @@ std::vector<std::optional<TimeOffset>> estimate(const FusionSettings& settings,
                                                 const std::function<void()>& between,
                                                 TimeOffsetSearch& delays, ModeledDrive& modeled) {
   modeled.settings = settings;
-  std::vector<std::optional<TimeOffset>> offsets = delays.find(settings, modeled.placed);
-  if (!*settings.estimates_noise) return offsets;
+  if (!*settings.estimates_noise) return delays.find(settings, modeled.placed);
+  delays.move(settings, modeled.placed);
   modeled.noise = estimate_noise(modeled.placed, sensors, settings, registry, modeled.noise, between);
   modeled.settings = with_noise(settings, modeled.noise);
   return delays.find(modeled.settings, modeled.placed);

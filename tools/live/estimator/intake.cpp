@@ -192,8 +192,8 @@ Arrival Intake::take_further(FurtherOdometry sample) {
     double ahead_s = seconds_between(*newest_, sample.stamp);
     Stamp moved = sample.stamp;
     moved.nanoseconds += moved_ns_;
-    if (!is_plausible(ahead_s) &&
-        is_plausible(seconds_between(*newest_, moved))) {  // it has the clock of the first one
+    // It may have the clock of the first one, which has stepped.
+    if (!is_plausible(ahead_s) && is_plausible(seconds_between(*newest_, moved))) {
       sample.stamp = moved;
       ahead_s = seconds_between(*newest_, moved);
     }

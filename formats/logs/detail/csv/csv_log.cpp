@@ -75,8 +75,8 @@ class CsvDecoder final : public LineDecoder {
                     [](const auto& column) { return number_of(column.second.column) > 0; });
     if (number == 0 || !by_number) return false;
     std::vector<std::string_view> fields;
-    if (!split_fields(line, separator_ != 0 ? separator_ : separator_of(line), fields)) return false;
     const char separator = separator_ != 0 ? separator_ : separator_of(line);
+    if (!split_fields(line, separator, fields)) return false;
     const bool has_values = std::any_of(
         fields.begin(), fields.end(), [&](std::string_view field) { return holds_value(field, separator); });
     if (!has_values) return false;  // a header, whose units count
