@@ -59,6 +59,26 @@ Eigen::Matrix2d covariance_of(const ExpectedError& error, const Graph& minimum) 
   return factors * Marginals(minimum).joint(vertices) * factors.transpose() + error.rest;
 }
 
+/// Returns the white sigma that the model gives an only fix, m.
+double white_sigma_of(FixQuality quality, double claim_m, const ClaimedAccuracies& claimed,
+                      const Options& options) {
+  Graph graph;
+  graph.add_vertex<VertexSe2>(VertexId{1}, {0, 0, 0});
+  graph.set_stamp(0, Stamp::from_seconds(1));
+  Fix fix;
+  fix.stamp = Stamp::from_seconds(1);
+  fix.vertex = VertexId{1};
+  fix.told.quality = quality;
+  fix.accuracy_claimed = true;
+  fix.covariance = claim_m * claim_m * Eigen::Matrix2d::Identity();
+  const std::vector<Fix> fixes{fix};
+  const std::vector<FixMoment> moments(1);
+  GnssInput input{fixes, moments, {0, 0}, std::nullopt};
+  input.claimed = claimed;
+  waymark_test::full_registry().make_gnss_modeling("correlated", options)->extend(input, graph);
+  return 1 / std::sqrt(fix_of(graph).information(0, 0));
+}
+
 }  // namespace
 
 TEST_CASE("correlated: tails are Student's t, or normal") {
@@ -85,30 +105,17 @@ TEST_CASE("correlated: tails are Student's t, or normal") {
 }
 
 TEST_CASE("correlated: errors are those expected over what is known of the exponent, at most as claimed") {
-  const TypeRegistry registry = waymark_test::full_registry();
   const double mean = 0.5;
   const double sigma = 0.2;
-  // The white sigma of a fix that claims so many times the median.
+  ClaimedAccuracies claimed;
+  claimed.median_m[0] = 1;
   const auto relative = [&](double claim) {
-    Graph graph;
-    graph.add_vertex<VertexSe2>(VertexId{1}, {0, 0, 0});
-    graph.set_stamp(0, Stamp::from_seconds(1));
-    Fix fix;
-    fix.stamp = Stamp::from_seconds(1);
-    fix.vertex = VertexId{1};
-    fix.covariance = claim * claim * Eigen::Matrix2d::Identity();
-    fix.accuracy_claimed = true;
-    const std::vector<Fix> fixes{fix};
-    const std::vector<FixMoment> moments(1);
-    GnssInput input{fixes, moments, {0, 0}, std::nullopt};
-    input.claimed.median_m[0] = 1;
-    const Options options = {{"white_sigma", "1"}, {"tails", "normal"}, {"accuracy_exponent_sigma", "0.2"}};
-    registry.make_gnss_modeling("correlated", options)->extend(input, graph);
-    return 1 / std::sqrt(fix_of(graph).information(0, 0));
+    return white_sigma_of(FixQuality::unknown, claim, claimed,
+                          {{"white_sigma", "1"}, {"tails", "normal"}, {"accuracy_exponent_sigma", "0.2"}});
   };
   for (const double claim : {0.5, 1.0, 2.0, 6.0}) {
-    double variance =
-        0;  // the mean of claim^(2 p), by the midpoints of 10000 equally probable parts of +-6 sigma
+    // The mean of claim^(2 p), by the midpoints of 10000 parts of +-6 sigma.
+    double variance = 0;
     double weights = 0;
     for (int i = -5000; i < 5000; ++i) {
       const double z = 6 * (i + 0.5) / 5000;
@@ -123,25 +130,12 @@ TEST_CASE("correlated: errors are those expected over what is known of the expon
 }
 
 TEST_CASE("correlated: sigmas hold for the claims that they are stated for") {
-  const TypeRegistry registry = waymark_test::full_registry();
+  ClaimedAccuracies claimed;
+  claimed.median_m = {std::nullopt, 1.5, 0.02};
   const auto sigma_of = [&](FixQuality quality, const Options& reference) {
-    Graph graph;
-    graph.add_vertex<VertexSe2>(VertexId{1}, {0, 0, 0});
-    graph.set_stamp(0, Stamp::from_seconds(1));
-    Fix fix;
-    fix.stamp = Stamp::from_seconds(1);
-    fix.vertex = VertexId{1};
-    fix.told.quality = quality;
-    fix.accuracy_claimed = true;
-    fix.covariance = std::pow(quality == FixQuality::fixed ? 0.02 : 1.5, 2) * Eigen::Matrix2d::Identity();
-    const std::vector<Fix> fixes{fix};
-    const std::vector<FixMoment> moments(1);
-    GnssInput input{fixes, moments, {0, 0}, std::nullopt};
-    input.claimed.median_m = {std::nullopt, 1.5, 0.02};
     Options options = {{"white_sigma", "0.03"}, {"tails", "normal"}, {"kind_exponent", "1"}};
     options.insert(reference.begin(), reference.end());
-    registry.make_gnss_modeling("correlated", options)->extend(input, graph);
-    return 1 / std::sqrt(fix_of(graph).information(0, 0));
+    return white_sigma_of(quality, quality == FixQuality::fixed ? 0.02 : 1.5, claimed, options);
   };
   // The sigma of a drive with fixed ambiguities alone, whose claims are 2 cm.
   const Options fixed = {{"reference_accuracy", "0.02"}};
