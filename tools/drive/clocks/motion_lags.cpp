@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -166,18 +167,22 @@ std::array<PerFix, kUnknowns> slopes_at(const WindowFit& fit, const LagUnknowns&
 struct LagEquations {
   Information information;
   LagUnknowns gradient;
-  Information spread;  ///< of the gradient, from its parts by window
+  Information spread;                         ///< of the gradient, from its parts by window
+  LagUnknowns squares = LagUnknowns::Zero();  ///< of what each window adds to the diagonal of the information
 
   void add(const WindowFit& fit, const WindowFit::Window& window, const PerFix& residuals,
            const std::array<PerFix, kUnknowns>& slopes, double usual_m) {
     LagUnknowns part = LagUnknowns::Zero();
+    Information own = Information::Zero();
     for (std::size_t i = window.first; i < window.end; ++i) {
       Eigen::Matrix<double, 2, kUnknowns> slope;
       for (int k = 0; k < kUnknowns; ++k) slope.col(k) = slopes[static_cast<std::size_t>(k)][i];
       const double weight = fit.weight(i) / (usual_m * usual_m);
-      information += weight * slope.transpose() * slope;
+      own += weight * slope.transpose() * slope;
       part += weight * slope.transpose() * residuals[i];
     }
+    information += own;
+    squares += own.diagonal().cwiseAbs2();
     gradient += part;
     spread += part * part.transpose();
   }
@@ -193,6 +198,12 @@ LagEquations equations_at(const WindowFit& fit, const LagUnknowns& unknowns, con
   return equations;
 }
 
+/// Returns how many windows tell of a lag, as if each told as much: a single bend has no spread.
+double telling(const LagEquations& equations, Unknown lag) {
+  const double sum = equations.information(lag, lag);
+  return sum * sum / std::max(equations.squares[lag], std::numeric_limits<double>::min());
+}
+
 }  // namespace
 
 double MotionLags::difference_sigma_s() const {
@@ -204,6 +215,7 @@ std::optional<MotionLags> estimate_motion_lags(const std::vector<OdometrySample>
   constexpr int kMostSteps = 10;
   constexpr double kLongestStep_s = 0.3;
   constexpr double kConverged_s = 0.001;
+  constexpr double kFewestTelling = 4;
   if (odometry.size() < 2 || fixes.empty()) return std::nullopt;
   WindowFit fit(odometry, fixes);
   if (fit.windows().size() < kFewestWindows) return std::nullopt;
@@ -214,6 +226,7 @@ std::optional<MotionLags> estimate_motion_lags(const std::vector<OdometrySample>
   const double few = windows / (windows - 3);
   LagUnknowns unknowns = LagUnknowns::Zero();
   Information covariance = Information::Zero();
+  double fewest = 0;
   for (int i = 0; i < kMostSteps; ++i) {
     fit.weigh(fit.residuals(unknowns));
     const LagEquations equations = equations_at(fit, unknowns, prior);
@@ -224,8 +237,10 @@ std::optional<MotionLags> estimate_motion_lags(const std::vector<OdometrySample>
     unknowns += step;
     if (!(unknowns.head<2>().cwiseAbs().maxCoeff() < kLargestLag_s)) return std::nullopt;
     covariance = few * inverse * equations.spread * inverse;
+    fewest = std::min(telling(equations, speed_lag_s), telling(equations, yaw_rate_lag_s));
     if (step.head<2>().cwiseAbs().maxCoeff() < kConverged_s) break;
   }
+  if (fewest < kFewestTelling) return std::nullopt;
   return MotionLags{unknowns[speed_lag_s], unknowns[yaw_rate_lag_s], covariance.topLeftCorner<2, 2>(),
                     unknowns[arm_m]};
 }

@@ -23,7 +23,7 @@ double speed_of(double t) {
   return 9 + 4 * std::sin(2 * M_PI * t / 40);
 }
 
-double yaw_rate_of(double t) {
+double bends_of(double t) {
   return 0.4 * std::sin(2 * M_PI * t / 160) * std::pow(std::sin(M_PI * (t - 10) / 40), 8);
 }
 
@@ -33,6 +33,7 @@ struct Fault {
   double fixes_late_s = 0;
   double antenna_ahead_m = 0;  ///< of where it is stated
   double yaw_factor = 1;       ///< of the readings of the gyro
+  double bends_until_s = 1e9;  ///< straight roads only after that
 };
 
 struct Readings {
@@ -53,6 +54,7 @@ Readings drive_with(const Fault& fault, double noise_m, double length_s = 1200) 
   constexpr double kScale = 1.02;
   constexpr double kBias_radps = 0.002;
   const Eigen::Vector2d antenna_m(1.0, 0.3);
+  const auto yaw_rate_of = [&](double t) { return t < fault.bends_until_s ? bends_of(t) : 0; };
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0, 1);
   Readings readings;
@@ -105,6 +107,18 @@ TEST_CASE("late quantity: a delay of the fixes is in both lags, and not in their
   CHECK(lags->speed_s == Approx(0.2).margin(0.01));
   CHECK(lags->yaw_rate_s == Approx(-0.3).margin(0.01));
   CHECK(lags->difference_s() == Approx(0.5).margin(0.01));
+}
+
+TEST_CASE("late quantity: one bend has no spread, so a drive with no other tells no lags") {
+  // The fixes of the only bend are those of a receiver that coasts through it and then catches up.
+  Readings readings = drive_with({.bends_until_s = 50}, 1);
+  for (Fix& fix : readings.fixes) {
+    const double t = fix.stamp.seconds();
+    if (t > 25 && t < 45) fix.position += 0.05 * (t - 25) * (45 - t) * Eigen::Vector2d(1, -1);
+  }
+  CHECK_FALSE(readings.lags());
+  CHECK_FALSE(readings.late());
+  CHECK(drive_with({.bends_until_s = 400}, 1).lags());
 }
 
 TEST_CASE("late quantity: a late speed is named, with its key") {
