@@ -37,12 +37,14 @@ SolutionKind kind_of(FixQuality quality) {
 }
 
 double ClaimedAccuracies::of(SolutionKind kind) const {
-  return median_m[static_cast<std::size_t>(kind)].value_or(0);
+  const auto at = static_cast<std::size_t>(kind);
+  const double claim_m = median_m[at].value_or(0);
+  return claim_m > 0 || kinds() < 2 ? claim_m : stand_in_m[at];
 }
 
 double ClaimedAccuracies::reference_m() const {
   const auto coarsest = std::find_if(median_m.begin(), median_m.end(), [](const auto& m) { return m; });
-  return coarsest == median_m.end() ? 0 : **coarsest;
+  return coarsest == median_m.end() ? 0 : of(static_cast<SolutionKind>(coarsest - median_m.begin()));
 }
 
 int ClaimedAccuracies::kinds() const {
@@ -51,15 +53,18 @@ int ClaimedAccuracies::kinds() const {
 
 ClaimedAccuracies claimed_accuracies(std::span<const Fix> fixes) {
   ClaimedAccuracies claimed;
-  std::array<std::vector<double>, 3> ordered;
+  std::array<std::vector<double>, 3> claims;
+  std::array<std::vector<double>, 3> stand_ins;
   for (const Fix& fix : fixes) {
     if (fix.status != FixStatus::accepted) continue;
     const auto kind = static_cast<std::size_t>(kind_of(fix.told.quality));
     claimed.median_m[kind] = 0;
-    if (fix.accuracy_claimed) ordered[kind].push_back(fix.accuracy_m());
+    (fix.accuracy_claimed ? claims : stand_ins)[kind].push_back(fix.accuracy_m());
   }
-  for (std::size_t kind = 0; kind < ordered.size(); ++kind)
-    if (!ordered[kind].empty()) claimed.median_m[kind] = upper_median(std::move(ordered[kind]));
+  for (std::size_t kind = 0; kind < claims.size(); ++kind) {
+    if (!claims[kind].empty()) claimed.median_m[kind] = upper_median(std::move(claims[kind]));
+    if (!stand_ins[kind].empty()) claimed.stand_in_m[kind] = upper_median(std::move(stand_ins[kind]));
+  }
   return claimed;
 }
 

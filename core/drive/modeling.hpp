@@ -108,8 +108,11 @@ struct ClaimedAccuracies {
   /// by SolutionKind: the median of Fix::accuracy_m, in m; 0 if no fix of the kind claims any
   /// (Fix::accuracy_claimed); empty if there is no fix of it
   std::array<std::optional<double>, 3> median_m{};
+  /// by SolutionKind: the median of what stands in for claims, in m; 0 if there is no such fix
+  std::array<double, 3> stand_in_m{};
 
-  /// Returns the median of a kind, 0 if it has none.
+  /// Returns the median of a kind. Of one that claims nothing: that of its stand-ins if there are other kinds, which
+  /// then says how much coarser or finer it is than those; else 0.
   [[nodiscard]] double of(SolutionKind kind) const;
   /// Returns the median of the coarsest kind of which there are fixes: parameters of a modeling hold for it.
   [[nodiscard]] double reference_m() const;

@@ -145,6 +145,26 @@ TEST_CASE("correlated: sigmas hold for the claims that they are stated for") {
   CHECK(sigma_of(FixQuality::floating, {}) == Approx(0.03));
 }
 
+TEST_CASE("correlated: a kind that claims nothing is as much coarser as its stand-ins are") {
+  Fix code;
+  code.status = FixStatus::accepted;
+  code.told.quality = FixQuality::single;
+  code.accuracy_claimed = false;
+  code.covariance = 9 * Eigen::Matrix2d::Identity();
+  Fix fixed = code;
+  fixed.told.quality = FixQuality::fixed;
+  fixed.accuracy_claimed = true;
+  fixed.covariance = 0.02 * 0.02 * Eigen::Matrix2d::Identity();
+  const Options options = {{"white_sigma", "1.5"}, {"tails", "normal"}, {"kind_exponent", "1"}};
+  const ClaimedAccuracies both = claimed_accuracies(std::vector{code, fixed});
+  CHECK(both.reference_m() == Approx(3));
+  CHECK(white_sigma_of(FixQuality::fixed, 0.02, both, options) == Approx(1.5 * 0.02 / 3));
+  // Alone, it says nothing.
+  const ClaimedAccuracies alone = claimed_accuracies(std::vector{code});
+  CHECK(alone.reference_m() == 0);
+  CHECK(alone.of(SolutionKind::code) == 0);
+}
+
 TEST_CASE("correlated: a loss that is asked for replaces that of the tails") {
   const LossType huber = builtin_losses().front();
   for (const char* tails : {"student", "normal"}) {

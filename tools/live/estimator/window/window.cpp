@@ -216,8 +216,11 @@ void Window::add_way(const MeasuredWay& way) {
 ClaimedAccuracies Window::with_kept(int source, ClaimedAccuracies claimed) const {
   const auto kept = kept_claims_.find(source);
   if (kept == kept_claims_.end()) return claimed;
-  for (std::size_t kind = 0; kind < claimed.median_m.size(); ++kind)
-    if (kept->second.median_m[kind]) claimed.median_m[kind] = kept->second.median_m[kind];
+  for (std::size_t kind = 0; kind < claimed.median_m.size(); ++kind) {
+    if (!kept->second.median_m[kind]) continue;
+    claimed.median_m[kind] = kept->second.median_m[kind];
+    claimed.stand_in_m[kind] = kept->second.stand_in_m[kind];
+  }
   return claimed;
 }
 
