@@ -11,6 +11,7 @@
 
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/tools/drive/mending/fix_motion.hpp>
+#include <waymark/tools/drive/mending/laid_odometry.hpp>
 #include <waymark/tools/drive/mending/sample_range.hpp>
 #include <waymark/tools/drive/nodes/yaw_rate_at_rest.hpp>
 #include <waymark/types_se2/se2.hpp>
@@ -349,6 +350,13 @@ bool come_back(std::span<const Fix> fixes) {
   return away(fixes.back()) < kShare * farthest;
 }
 
+/// Tells whether a vehicle stood while its fixes wandered: afterwards they are where its odometry leads those before.
+bool stood(const LaidOdometry& laid, const FrozenOdometry& frozen, Stamp end) {
+  constexpr double kShare = 0.4;
+  const std::optional<double> displacement_m = laid.displacement_m(frozen.from, end);
+  return displacement_m && *displacement_m < kShare * frozen.distance_m;
+}
+
 /// Finds times of one speed.
 void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vector<Fix>& fixes,
                         bool is_derived, std::vector<FrozenOdometry>& found) {
@@ -356,6 +364,7 @@ void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vec
   const std::optional<std::size_t> unusual = unusual_run(odometry, runs, &OdometrySample::speed_mps);
   const std::optional<std::size_t> unusual_turns = unusual_run(
       odometry, runs_of(odometry, &OdometrySample::yaw_rate_radps), &OdometrySample::yaw_rate_radps);
+  std::optional<LaidOdometry> laid;
   for (const Run& run : runs) {
     const auto samples = run.of(odometry);
     const OdometrySample& first = samples.front();
@@ -376,10 +385,13 @@ void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vec
       continue;
     }
     if (duration_of(samples) < kShortestStandstill_s) continue;
-    if (!with_turns && all_at_rest(samples) && come_back(during)) continue;
+    const bool may_stand = !with_turns && all_at_rest(samples);
+    if (may_stand && come_back(during)) continue;
     for (const std::vector<Contradiction>& row : contradictions_of(during, std::abs(first.speed_mps))) {
       std::optional<FrozenOdometry> frozen = judged(row, during, first, samples.back());
       if (!frozen) continue;
+      if (may_stand && !laid) laid.emplace(odometry, fixes);
+      if (may_stand && stood(*laid, *frozen, samples.back().stamp)) continue;
       frozen->with_turns = all_repeat(within(samples, *frozen), &OdometrySample::yaw_rate_radps);
       found.push_back(*frozen);
     }

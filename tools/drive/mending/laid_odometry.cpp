@@ -38,6 +38,8 @@ Complex complex_of(const Fix& fix) {
 
 /// Sums of places beside each other, about their means.
 struct Moments {
+  Complex middle_of_fixes;
+  Complex middle_of_odometry;
   Complex product;  ///< of the fixes with the conjugates of the odometry
   double fixes = 0;
   double odometry = 0;
@@ -52,7 +54,7 @@ Moments moments_of(std::span<const Fix> fixes, std::span<const Complex> places) 
   }
   middle_of_fixes /= static_cast<double>(fixes.size());
   middle_of_odometry /= static_cast<double>(fixes.size());
-  Moments sums;
+  Moments sums{middle_of_fixes, middle_of_odometry, {}, 0, 0};
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     const Complex fix = complex_of(fixes[i]) - middle_of_fixes;
     const Complex reckoned = places[i] - middle_of_odometry;
@@ -105,14 +107,10 @@ LaidTime LaidOdometry::alignment(Stamp from, Stamp to) const {
   constexpr double kCoherence = 0.9;
   constexpr double kSpread_m = 1.5;  // of 5 m of way
   constexpr double kHeaviest_m = 100;
-  const std::span<const Fix> during(first_since(from), first_since(to));
+  const auto [during, places] = pairs(from, to);
   if (during.size() < kFewestFixes) return {};
-  std::vector<Complex> places;
   double accuracy_m = 0;
-  for (const Fix& fix : during) {
-    places.push_back(position_at(fix.stamp));
-    accuracy_m = std::max(accuracy_m, fix.accuracy_m());
-  }
+  for (const Fix& fix : during) accuracy_m = std::max(accuracy_m, fix.accuracy_m());
   const Moments sums = moments_of(during, places);
   const double spread_m = std::sqrt(sums.odometry / static_cast<double>(during.size()));
   const double factor = std::sqrt(sums.fixes / sums.odometry);
@@ -120,6 +118,30 @@ LaidTime LaidOdometry::alignment(Stamp from, Stamp to) const {
                         factor < kLargestFactor && factor > 1 / kLargestFactor;
   if (spread_m < std::max(kSpread_m, 0.5 * accuracy_m) || !is_clear) return {};
   return {sums.product / std::abs(sums.product), std::min(kHeaviest_m, std::sqrt(12.0) * spread_m)};
+}
+
+std::optional<double> LaidOdometry::displacement_m(Stamp from, Stamp to) const {
+  constexpr double kBeside_s = 20;
+  constexpr double kSettles_s = 5;  // what a receiver needs to come back
+  constexpr std::size_t kFewestFixes = 4;
+  constexpr double kCoherence = 0.95;
+  const Pairs before = pairs(from.later(-kBeside_s), from);
+  const Pairs after = pairs(to.later(kSettles_s), to.later(kSettles_s + kBeside_s));
+  if (std::min(before.fixes.size(), after.fixes.size()) < kFewestFixes) return std::nullopt;
+  const Moments first = moments_of(before.fixes, before.places);
+  const Moments last = moments_of(after.fixes, after.places);
+  const Complex product = first.product + last.product;
+  const double both = std::sqrt((first.fixes + last.fixes) * (first.odometry + last.odometry));
+  if (!(both > 0) || std::abs(product) < kCoherence * both) return std::nullopt;
+  const Complex turn = product / std::abs(product);
+  return std::abs(last.middle_of_fixes - first.middle_of_fixes -
+                  turn * (last.middle_of_odometry - first.middle_of_odometry));
+}
+
+LaidOdometry::Pairs LaidOdometry::pairs(Stamp from, Stamp to) const {
+  Pairs result{{first_since(from), first_since(to)}, {}};
+  for (const Fix& fix : result.fixes) result.places.push_back(position_at(fix.stamp));
+  return result;
 }
 
 /// Compares short times that follow each other while the vehicle moves and the odometry speaks. It does not matter

@@ -3,6 +3,7 @@
 
 #include <complex>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -52,7 +53,18 @@ class LaidOdometry {
   /// the fixes, have no alignment.
   [[nodiscard]] LaidTime alignment(Stamp from, Stamp to) const;
 
+  /// Returns how far the fixes after a time lie from where the odometry leads those before it: 20 s before, and 20 s
+  /// that begin 5 s after. Empty: the fixes do not have the shape of the odometry there, or there are too few.
+  [[nodiscard]] std::optional<double> displacement_m(Stamp from, Stamp to) const;
+
  private:
+  /// Fixes of a time, and the odometry's places beside them.
+  struct Pairs {
+    std::span<const Fix> fixes;
+    std::vector<std::complex<double>> places;
+  };
+  [[nodiscard]] Pairs pairs(Stamp from, Stamp to) const;
+
   /// How far the odometry turned from the fixes, between two times.
   struct Drifted {
     double turn_rad = 0;

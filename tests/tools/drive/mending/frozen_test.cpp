@@ -124,6 +124,16 @@ TEST_CASE("frozen: while a gyro is alive, fixes that go away from a stop and hal
   CHECK(find_frozen_odometry(scene.odometry, scene.fixes).size() == 1);
 }
 
+TEST_CASE("frozen: fixes that wander away from a stop, and are back once the vehicle drives, prove nothing") {
+  Scene scene = standing([](int second) { return Eigen::Vector2d(1.5 * (second - 30), 0); });
+  for (std::size_t i = 300; i <= 600; ++i)
+    scene.odometry[i].yaw_rate_radps = 1e-3 * std::sin(2.7 * static_cast<double>(i));
+  CHECK(find_frozen_odometry(scene.odometry, scene.fixes).empty());
+  // Fixes that go on from where they went to: the vehicle was there.
+  for (std::size_t second = 61; second <= 100; ++second) scene.fixes[second].position.x() += 45;
+  CHECK(find_frozen_odometry(scene.odometry, scene.fixes).size() == 1);
+}
+
 TEST_CASE("frozen: a moving vehicle does not repeat its readings, even if the fixes fit") {
   const Scene scene = frozen_at(10, 0.01);
   const std::vector<FrozenOdometry> found = find_frozen_odometry(scene.odometry, scene.fixes);
