@@ -35,7 +35,10 @@ target_compile_features(waymark_settings INTERFACE cxx_std_20)
 set_target_properties(waymark_settings PROPERTIES EXPORT_NAME settings)
 # Not for those who build us as a part of theirs: their warnings are their own affair.
 if(PROJECT_IS_TOP_LEVEL)
-  target_compile_options(waymark_settings INTERFACE $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wconversion -Wshadow>)
+  target_compile_options(waymark_settings INTERFACE $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wconversion>)
+  if(NOT (CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID MATCHES "Clang"))  # it warns of the constants of merged sources
+    target_compile_options(waymark_settings INTERFACE $<BUILD_INTERFACE:-Wshadow>)
+  endif()
   # g++ collects garbage whenever its memory has grown by a share; from a GB on, a build takes a tenth less time. Half a GB
   # or its own rule where the jobs that ninja runs at once would not find so much.
   include("${CMAKE_CURRENT_LIST_DIR}/available_memory.cmake")
@@ -106,6 +109,9 @@ endfunction()
 function(waymark_cold target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_precompile_headers(${target} REUSE_FROM waymark_precompiled)
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")  # which refuses a header of another visibility, such as a plugin has
+    set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)
+  endif()
 endfunction()
 
 # waymark_library(NAME [SHARED] [HOT] [UNITS COUNT] [WITHOUT PATHS...]): a library of every *.cpp below the calling

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include <random>
+#include <tuple>
 
 #include <waymark/core/base/angle.hpp>
 #include <waymark/tools/drive/mending/reversing.hpp>
@@ -73,7 +74,9 @@ TEST_CASE("reversing: a drive forwards has none, also with fixes of 3 m") {
 }
 
 TEST_CASE("reversing: an odometry that turns all the time drives no way backwards, and hides none") {
-  const auto [bias_radps, turns_radpm] = GENERATE(
+  double bias_radps;
+  double turns_radpm;
+  std::tie(bias_radps, turns_radpm) = GENERATE(
       table<double, double>({{0.1, 0.0}, {-0.1, 0.0}, {0.003, 0.01}, {0.003, -0.015}, {0.05, -0.01}}));
   // the gyro never rests: its bias is not known from stops
   const auto moving = [&](int backwards) {
