@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -348,6 +349,42 @@ TEST_CASE("inspection: names of columns and signals say quantity, unit and sense
   CHECK(told("gz") == "gyro_z||");
   CHECK(told("Vitesse de lacet (deg/s)") == "yaw_rate|deg/s|");
   CHECK_FALSE(propose_quantity("hacc_m_first_60s_only").remark.empty());
+}
+
+TEST_CASE("inspection: names of accuracies say what share of the errors they hold") {
+  const auto told = [](const char* name) {
+    const ColumnProposal proposal = propose_quantity(name);
+    return std::tuple(proposal.quantity, proposal.meaning, proposal.scale);
+  };
+  const std::string accuracy = "accuracy";
+  CHECK(told("2DRMS [m]") == std::tuple(accuracy, AccuracyMeaning::drms, 0.5));
+  CHECK(told("cep_m") == std::tuple(accuracy, AccuracyMeaning::cep50, 1.0));
+  CHECK(told("accuracy_drms") == std::tuple(accuracy, AccuracyMeaning::drms, 1.0));
+  CHECK(told("hacc_m") == std::tuple(accuracy, AccuracyMeaning::automatic, 1.0));
+  // 95 % of normal errors of 1 per axis are within sqrt(-2 log 0.05); their drms is sqrt(2).
+  const auto [quantity, meaning, scale] = told("r95");
+  CHECK(quantity == accuracy);
+  CHECK(meaning == AccuracyMeaning::drms);
+  CHECK(scale == Approx(std::sqrt(2.0) / std::sqrt(-2 * std::log(0.05))).epsilon(1e-3));
+  const ColumnProposal rate = propose_quantity("gyro_z_mdps");
+  CHECK(rate.quantity == "gyro_z");
+  CHECK(rate.unit == "deg/s");
+  CHECK(rate.scale == 1e-3);
+}
+
+TEST_CASE("inspection: the meaning of an accuracy is proposed as its name tells") {
+  std::string text = "time,lat,lon,2DRMS [m]\n";
+  for (int i = 0; i < 60; ++i) {
+    const Row row = row_at(i);
+    text += fmt::format("{:.3f},{:.8f},{:.8f},{}\n", row.t, row.latitude, row.longitude, 5.6 + i % 3);
+  }
+  const LogInspection log = inspect(write("drms.csv", text));
+  // 2drms of 5.6 m are 2.8 m drms, which are 1.98 m per axis.
+  CHECK(log.fixes->with_accuracy == 60);
+  const std::vector<LogInspection> logs{log};
+  const std::string yaml = drive_yaml(propose_drive(logs), logs, waymark_test::scratch_dir());
+  CHECK(has(yaml, "meaning: drms\n"));
+  CHECK(has(yaml, "scale: 0.5"));
 }
 
 TEST_CASE("inspection: CAN frames without a DBC are ids with rates and lengths") {

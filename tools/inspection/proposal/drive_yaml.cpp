@@ -9,6 +9,7 @@
 
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/formats/logs/channels.hpp>
+#include <waymark/formats/logs/detail/common/accuracy.hpp>
 #include <waymark/formats/logs/detail/csv/composed.hpp>
 #include <waymark/tools/inspection/log_clock.hpp>
 #include <waymark/tools/inspection/proposal/drive_proposal.hpp>
@@ -386,9 +387,18 @@ class Writer {
     return {};
   }
 
+  /// Returns the meaning of the accuracy that the name of its column tells.
+  static std::string named_meaning(const LogInspection& log) {
+    const auto columns = proposed_columns(log, StreamKind::gnss);
+    const auto column = columns.find("accuracy");
+    if (column == columns.end() || column->second->proposal.meaning == AccuracyMeaning::automatic) return {};
+    return std::string(formats::to_string(column->second->proposal.meaning));
+  }
+
   void accuracy(const LogInspection& log, const std::string& indent) {
     const FixSummary& fixes = *log.fixes;
-    const std::string meaning = assumed_meaning(log);
+    const std::string named = named_meaning(log);
+    const std::string meaning = named.empty() ? assumed_meaning(log) : named;
     const std::size_t usual = fixes_with_usual_sigma(fixes);
     const std::size_t lacking = fixes.fixes - fixes.with_accuracy - usual;
     if (usual > 0)
@@ -398,7 +408,8 @@ class Writer {
     if (meaning.empty() && lacking == 0) return;
     line(indent + "accuracy:");
     if (!meaning.empty())
-      line(fmt::format("{}  meaning: {}", indent, meaning), "CHECK: assumed; 95, 1sigma, drms or cep50");
+      line(fmt::format("{}  meaning: {}", indent, meaning),
+           named.empty() ? "CHECK: assumed; 95, 1sigma, drms or cep50" : "");
     if (lacking > 0)
       line(indent + "  default_sigma: 5",
            fmt::format("CHECK: m per axis, invented: {} of {} fixes have no accuracy", lacking, fixes.fixes));

@@ -33,9 +33,11 @@ constexpr std::array kKnown{
     Known{"height",
           "h|alt|altitude|height|ele|elevation|ellipsoidal height|height ellipsoid|gps alt|gps altitude|hmsl|"
           "höhe|hoehe|hauteur|altura|altitud"},
-    Known{"accuracy",
-          "accuracy|hacc|h acc|h accuracy|eph|pos acc|position accuracy|pos accuracy|horizontal accuracy|acc "
-          "h|gps accuracy|hpe|epe|accuracy horizontal|genauigkeit|précision|precision|precisión"},
+    Known{
+        "accuracy",
+        "accuracy|hacc|h acc|h accuracy|eph|pos acc|position accuracy|pos accuracy|horizontal accuracy|acc "
+        "h|gps accuracy|hpe|epe|accuracy horizontal|genauigkeit|précision|precision|precisión|"
+        "drms|2drms|2 drms|cep|cep50|cep 50|r95|cep95|cep 95|accuracy drms|accuracy 2drms|accuracy cep|accuracy cep50|accuracy r95"},
     Known{"accuracy_east", "epx|accuracy east|acc east|acc e"},
     Known{"accuracy_north", "epy|accuracy north|acc north|acc n"},
     Known{
@@ -255,6 +257,44 @@ void read_scale(std::span<const std::string> words, ColumnProposal& proposal) {
   }
 }
 
+/// Returns the unit of a rate of which a word names the thousandth, "deg/s" for "mdps"; else empty.
+std::string_view thousandth_in(const std::string& word) {
+  if (word.size() < 3 || word.front() != 'm') return {};
+  const std::string_view unit = formats::known_unit(word.substr(1));
+  return !unit.empty() && dimension(unit) == "rate" ? unit : std::string_view();
+}
+
+void read_thousandths(std::span<const std::string> words, ColumnProposal& proposal) {
+  if (proposal.unit_known || dimension_of(proposal.quantity) != "rate") return;
+  for (const std::string& word : words) {
+    const std::string_view unit = thousandth_in(word);
+    if (unit.empty()) continue;
+    proposal.unit = unit;
+    proposal.unit_known = true;
+    proposal.scale = 1e-3;
+  }
+}
+
+/// The name of a radius tells what share of the errors it holds.
+void read_meaning(std::span<const std::string> words, ColumnProposal& proposal) {
+  if (proposal.quantity != "accuracy") return;
+  const auto has = [&](std::string_view word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  if (has("2drms") || (has("2") && has("drms"))) {
+    proposal.meaning = AccuracyMeaning::drms;
+    proposal.scale = 0.5;
+  } else if (has("r95") || has("cep95") || (has("cep") && has("95"))) {
+    proposal.meaning = AccuracyMeaning::drms;
+    proposal.scale = 0.578;  // sqrt(2) / 2.448: the radius of 95 % of normal errors of 1 per axis
+    proposal.remark = "a radius that holds 95 % of the errors is 1 / 0.578 of their drms";
+  } else if (has("drms")) {
+    proposal.meaning = AccuracyMeaning::drms;
+  } else if (has("cep") || has("cep50")) {
+    proposal.meaning = AccuracyMeaning::cep50;
+  }
+}
+
 /// Earth-centred coordinates, "ecef_x" or "WlsPositionXEcefMeters"; but not those of satellites, and no velocity.
 std::string ecef_of(std::span<const std::string> words) {
   const auto has = [&](std::string_view word) {
@@ -326,7 +366,7 @@ ColumnProposal proposal_of(std::span<const std::string> words) {
   const auto understood = [](const std::string& word) {
     static constexpr std::array<std::string_view, 12> kHarmless{
         "cw", "ccw", "from", "east", "north", "flag", "raw", "value", "filtered", "clock", "gps", "gnss"};
-    return !formats::known_unit(word).empty() ||
+    return !formats::known_unit(word).empty() || !thousandth_in(word).empty() ||
            std::find(kHarmless.begin(), kHarmless.end(), word) != kHarmless.end();
   };
   if (!rest.empty() && !understood(rest.front())) return {};
@@ -335,6 +375,8 @@ ColumnProposal proposal_of(std::span<const std::string> words) {
   read_dimension(rest, proposal);
   read_unit(rest.empty() ? words : rest, proposal);
   read_scale(words, proposal);
+  read_thousandths(words, proposal);
+  read_meaning(words, proposal);
   read_sense(words, proposal);
   read_code(words, proposal);
   const auto odd = std::find_if_not(rest.begin(), rest.end(), understood);

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include <waymark/core/drive/log_reader.hpp>
+
 namespace waymark::inspection {
 
 /// The proposal for a column.
@@ -17,6 +19,8 @@ struct ColumnProposal {
   std::string remark;               ///< why the user should check it; empty: the name is clear
   double scale = 1;                 ///< as ColumnRequest::scale
   std::optional<double> missing{};  ///< as ColumnRequest::missing
+  /// of an accuracy, if its name tells it
+  AccuracyMeaning meaning = AccuracyMeaning::automatic;
 };
 
 /// Returns the words of a name in small letters: "gyro_x_degps", "WheelSpeedFL", "speed [km/h]"
