@@ -136,6 +136,22 @@ void attach_losses(Graph& graph, const RobustChoice& choice, const TypeRegistry&
   }
 }
 
+namespace {
+
+/// Adds a note for each edge, and one for all if they are many.
+/// @param one holds the name of the edge @param many their number and the name of the first one
+void add_each(const Graph& graph, const std::vector<EdgePlace>& edges, fmt::format_string<std::string> one,
+              fmt::format_string<std::size_t, std::string> many, std::vector<std::string>& notes) {
+  constexpr std::size_t kMost = 3;
+  if (edges.size() > kMost) {
+    notes.push_back(fmt::format(many, edges.size(), name_of(graph, edges.front())));
+    return;
+  }
+  for (const EdgePlace place : edges) notes.push_back(fmt::format(one, name_of(graph, place)));
+}
+
+}  // namespace
+
 Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& registry,
                                std::optional<Graduated>& found) {
   GraduationOptions options;
@@ -154,18 +170,22 @@ Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& r
       }
       lines.finish();
     });
-    for (const EdgePlace place : found->result.distrusted)
-      found->notes.push_back("a trusted edge contradicts the other edges and is left out: " +
-                             name_of(graph, place));
+    add_each(graph, found->result.distrusted,
+             "{} contradicts the other edges and is left out, although it is trusted",
+             "{} edges contradict the others and are left out, although they are trusted: {} and others",
+             found->notes);
     if (const auto& edges = found->result.contradicted; !edges.empty())
       found->notes.push_back(fmt::format(
           "{} trusted edges contradict the other edges, and the result with them: {}{}; --trusted none doubts them",
           edges.size(), name_of(graph, edges.front()), edges.size() > 1 ? " and others" : ""));
-    for (const EdgePlace place : found->result.unconfirmed)
-      found->notes.push_back(fmt::format(
-          "{} alone joins two parts of the graph, and others that would join them elsewhere are left out: nothing "
-          "confirms where these parts are to each other",
-          name_of(graph, place)));
+    add_each(
+        graph, found->result.unconfirmed,
+        "{} alone joins two parts of the graph, and others that would join them elsewhere are left out: nothing "
+        "confirms where these parts are to each other",
+        "{} edges each alone join two parts of the graph, and others that would join them elsewhere are left out: "
+        "nothing confirms where these parts are to each other. If no edge of this graph is false, edges "
+        "such as {} claim too much: their information is too large",
+        found->notes);
     graph = without_edges(graph, found->result.outliers);
     return found->result.summary;
   };
