@@ -6,7 +6,9 @@
 #include <limits>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlopt.h>
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include <waymark/core/base/detail/median.hpp>
@@ -15,8 +17,11 @@
 namespace waymark::drive {
 namespace {
 
-/// An antenna ahead and to the left, m, and a delay of the fixes, s.
+/// An antenna ahead and to the left of where it is taken to be, m, and a delay of the fixes, s.
 using PlaceAndDelay = Eigen::Vector3d;
+
+/// The first steps of a search.
+const PlaceAndDelay kFirst(0.5, 0.5, 0.05);
 
 double cost_at(const PlaceAndDelay& at, TrialDrive& trial) {
   return trial.cost_with([&](PlacedDrive& drive) {
@@ -54,7 +59,6 @@ double cost_of_place(unsigned, const double* at, double*, void* data) {
 Minimum least_of(const PlaceAndDelay& bounds, TrialDrive& trial) {
   constexpr int kMostEvaluations = 60;
   const PlaceAndDelay low = -bounds;
-  const PlaceAndDelay first(0.5, 0.5, 0.05);
   const PlaceAndDelay near(0.01, 0.01, 0.001);
   Minimum least;
   PlaceSearch search{trial};
@@ -62,7 +66,7 @@ Minimum least_of(const PlaceAndDelay& bounds, TrialDrive& trial) {
   nlopt_set_min_objective(bobyqa, cost_of_place, &search);
   nlopt_set_lower_bounds(bobyqa, low.data());
   nlopt_set_upper_bounds(bobyqa, bounds.data());
-  nlopt_set_initial_step(bobyqa, first.data());
+  nlopt_set_initial_step(bobyqa, kFirst.data());
   nlopt_set_xtol_abs(bobyqa, near.data());
   nlopt_set_maxeval(bobyqa, kMostEvaluations);
   nlopt_optimize(bobyqa, least.at.data(), &least.cost);  // its best values stand whatever ends it
@@ -71,15 +75,23 @@ Minimum least_of(const PlaceAndDelay& bounds, TrialDrive& trial) {
   return least;
 }
 
-/// Returns the second derivatives of the cost by central differences.
-Eigen::Matrix3d curvature_at(const Minimum& minimum, const PlaceAndDelay& steps, TrialDrive& trial) {
-  const auto& [at, here] = minimum;
+/// The cost about a place.
+struct Slopes {
+  Eigen::Vector3d gradient;
   Eigen::Matrix3d curvature;
+};
+
+/// Returns the derivatives of the cost by central differences.
+Slopes slopes_at(const Minimum& minimum, const PlaceAndDelay& steps, TrialDrive& trial) {
+  const auto& [at, here] = minimum;
+  Slopes slopes;
   Eigen::Vector3d after;
   for (int i = 0; i < 3; ++i) {
     const PlaceAndDelay step = steps[i] * PlaceAndDelay::Unit(i);
     after[i] = cost_at(at + step, trial);
-    curvature(i, i) = (cost_at(at - step, trial) - 2 * here + after[i]) / (steps[i] * steps[i]);
+    const double before = cost_at(at - step, trial);
+    slopes.gradient[i] = (after[i] - before) / (2 * steps[i]);
+    slopes.curvature(i, i) = (before - 2 * here + after[i]) / (steps[i] * steps[i]);
   }
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < i; ++j) {
@@ -87,10 +99,18 @@ Eigen::Matrix3d curvature_at(const Minimum& minimum, const PlaceAndDelay& steps,
           cost_at(at + steps[i] * PlaceAndDelay::Unit(i) + steps[j] * PlaceAndDelay::Unit(j), trial);
       // Each step alone costs its slope and half its curvature; what is left over both is the product of them.
       const double cross = (both - after[i] - after[j] + here) / (steps[i] * steps[j]);
-      curvature(i, j) = curvature(j, i) = cross;
+      slopes.curvature(i, j) = slopes.curvature(j, i) = cross;
     }
   }
-  return curvature;
+  return slopes;
+}
+
+/// Tells whether no place within the bounds seems to make the fixes more probable by some half chi2: a parabola
+/// through the costs about here, which take a sixth of a search, is not deep enough.
+bool is_flat(const Slopes& slopes, const PlaceAndDelay& bounds, double gain) {
+  const Eigen::Matrix3d within = 0.5 * bounds.cwiseAbs2().cwiseInverse().asDiagonal();
+  const Eigen::LLT<Eigen::Matrix3d> factor(slopes.curvature + within);
+  return factor.info() == Eigen::Success && 0.5 * slopes.gradient.dot(factor.solve(slopes.gradient)) < gain;
 }
 
 /// Returns steps of a fraction of the accuracy of the fixes.
@@ -105,7 +125,7 @@ PlaceAndDelay steps_of(const PlacedDrive& drive) {
 bool may_be_found(const PlacedDrive& placed, const FusionSettings& settings) {
   return settings.lever_arm && !placed.fixes.empty() && placed.receivers.size() == 1 &&
          std::all_of(placed.fixes.begin(), placed.fixes.end(),
-                     [](const Fix& fix) { return fix.antenna_m == Eigen::Vector2d::Zero(); });
+                     [&](const Fix& fix) { return fix.antenna_m == placed.fixes.front().antenna_m; });
 }
 
 }  // namespace
@@ -119,6 +139,7 @@ std::optional<AntennaPlace> find_antenna_place(const PlacedDrive& placed,
   constexpr std::size_t kWindows = 12;
   constexpr double kWindow_s = 200;
   constexpr double kGain = 15;
+  constexpr double kFlat = 0.5;  // of that
   constexpr double kSigmas = 4;
   constexpr double kLeast_m = 0.1;
   constexpr double kFarthest_m = 10;
@@ -128,6 +149,9 @@ std::optional<AntennaPlace> find_antenna_place(const PlacedDrive& placed,
                    settings, registry, between);
   const double unmoved = cost_at(PlaceAndDelay::Zero(), trial);
   const PlaceAndDelay bounds(kFarthest_m, kFarthest_m, kLatest_s);
+  const Minimum here{PlaceAndDelay::Zero(), unmoved};
+  const double flat = kFlat * kGain * std::pow(trial.spread(unmoved), 2);
+  if (is_flat(slopes_at(here, kFirst, trial), bounds, flat)) return std::nullopt;
   const Minimum least = least_of(bounds, trial);
   const bool is_inside = (least.at.cwiseAbs().array() < 0.9 * bounds.array()).all();
   const double spread = trial.spread(least.cost);
@@ -135,12 +159,35 @@ std::optional<AntennaPlace> find_antenna_place(const PlacedDrive& placed,
   if (!(unmoved - least.cost > kGain * spread * spread) || !(size_m > kLeast_m) || !is_inside)
     return std::nullopt;
   const Eigen::Matrix3d covariance =
-      spread * spread * curvature_at(least, steps_of(trial.drive()), trial).inverse();
-  const AntennaPlace antenna{least.at.head<2>(), covariance.diagonal().head<2>().cwiseSqrt()};
-  const Eigen::Vector2d direction = antenna.place_m / size_m;
+      spread * spread * slopes_at(least, steps_of(trial.drive()), trial).curvature.inverse();
+  const Eigen::Vector2d& taken_m = placed.fixes.front().antenna_m;
+  const AntennaPlace antenna{taken_m + least.at.head<2>(), taken_m,
+                             covariance.diagonal().head<2>().cwiseSqrt()};
+  const Eigen::Vector2d direction = least.at.head<2>() / size_m;
   const double sigma_m = std::sqrt(direction.dot(covariance.topLeftCorner<2, 2>() * direction));
   if (!antenna.sigma_m.allFinite() || !(size_m > kSigmas * sigma_m)) return std::nullopt;
   return antenna;
+}
+
+std::string warning_of(const AntennaPlace& antenna, const std::string& receiver) {
+  const auto side = [](double value, const char* positive, const char* negative) {
+    return value < 0 ? negative : positive;
+  };
+  const Eigen::Vector2d& at = antenna.place_m;
+  const std::string place = fmt::format(
+      "{:.2f} +- {:.2f} m {} and {:.2f} +- {:.2f} m {} the point of the vehicle whose motion the odometry measures",
+      std::abs(at.x()), antenna.sigma_m.x(), side(at.x(), "ahead of", "behind"), std::abs(at.y()),
+      antenna.sigma_m.y(), side(at.y(), "to the left of", "to the right of"));
+  const std::string cure = fmt::format("state 'antenna: [{:.2f}, {:.2f}]'", at.x(), at.y());
+  if (antenna.taken_m == Eigen::Vector2d::Zero())
+    return fmt::format(
+        "the antenna of '{}' seems to be {}, but is fused as if it were there: {} for it, or the result is off by as "
+        "much, and late or early in bends",
+        receiver, place, cure);
+  return fmt::format(
+      "the antenna of '{}' is stated at [{:.2f}, {:.2f}], but the drive shows it {}: check the signs (ahead and to the "
+      "left are positive) and the point that it is measured from, or {}",
+      receiver, antenna.taken_m.x(), antenna.taken_m.y(), place, cure);
 }
 
 }  // namespace waymark::drive

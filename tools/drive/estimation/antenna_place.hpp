@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 
 #include <Eigen/Core>
 
@@ -17,19 +18,23 @@ namespace waymark::drive {
 
 struct AntennaPlace {
   Eigen::Vector2d place_m = Eigen::Vector2d::Zero();  ///< ahead and to the left
+  Eigen::Vector2d taken_m =
+      Eigen::Vector2d::Zero();  ///< where it is taken to be: at the origin, unless it is stated
   Eigen::Vector2d sigma_m = Eigen::Vector2d::Zero();
 };
 
 /// Finds the place that makes the fixes most probable, together with a delay of them, on a sample of the drive.
 /// @param placed with the time offsets of its fixes @param settings with the noise
 /// @param between called between its fusions; what it throws ends the search. Empty: nothing is called
-/// @return empty if an antenna is stated elsewhere than at that point, if there are several receivers, or if
-/// the place is not significant: half chi2 falls by less than 15, or it is known to a quarter of its size
-/// only, or it is no decimetre, or beyond 9 m
+/// @return empty if there are several receivers, or if the way from where the antenna is taken to be is not significant:
+/// half chi2 falls by less than 15, or it is known to a quarter of its length only, or it is no decimetre, or beyond 9 m
 [[nodiscard]] std::optional<AntennaPlace> find_antenna_place(const PlacedDrive& placed,
                                                              std::span<const PreparedSensor> sensors,
                                                              const FusionSettings& settings,
                                                              const TypeRegistry& registry,
                                                              const std::function<void()>& between = {});
+
+/// Returns the warning about an antenna that is not where it is taken to be. @param receiver its name
+[[nodiscard]] std::string warning_of(const AntennaPlace& antenna, const std::string& receiver);
 
 }  // namespace waymark::drive

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include <waymark/tools/drive/estimation/trial_drive.hpp>
 
 namespace waymark::drive {
@@ -79,6 +81,16 @@ PreparedDrive without_drift(PreparedDrive drive, const ClockDrift& drift) {
     sample.stamp = sample.stamp.later(drift.rate * seconds_between(agreed, sample.stamp));
   if (drive.odometry.back().stamp < last.stamp) drive.odometry.push_back(std::move(last));
   return drive;
+}
+
+std::string warning_of(const ClockDrift& drift, double duration_s) {
+  constexpr double kMillion = 1e6;
+  const double ppm = kMillion * drift.rate;
+  return fmt::format(
+      "the clock of the odometry {} by {:.1f} +- {:.1f} ppm beside that of the fixes, {:.3f} s from the first one to "
+      "the last; its readings are taken at the times of that clock, as if both agreed at the first fix",
+      ppm > 0 ? "falls behind" : "hurries", std::abs(ppm), kMillion * drift.sigma,
+      std::abs(drift.rate) * duration_s);
 }
 
 }  // namespace waymark::drive

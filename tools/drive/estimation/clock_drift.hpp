@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
@@ -36,5 +37,8 @@ struct ClockDrift {
 /// Returns the drive with the odometry's readings at the times of the other clock. Both agree at the first fix: a
 /// constant difference cannot be told from fixes that are late. The last reading holds until the former end.
 [[nodiscard]] PreparedDrive without_drift(PreparedDrive drive, const ClockDrift& drift);
+
+/// Returns the warning about a clock that drifts. @param duration_s from the first fix to the last one
+[[nodiscard]] std::string warning_of(const ClockDrift& drift, double duration_s);
 
 }  // namespace waymark::drive

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include <fmt/format.h>
+
 namespace waymark::drive {
 
 void remove_slip(double per_mps2, PlacedDrive& drive) {
@@ -35,6 +37,14 @@ PreparedDrive without_slip(PreparedDrive drive, const SpeedSlip& slip) {
       drive.odometry[i].speed_mps = read[i].speed_mps * (1 - slip.per_mps2 * acceleration_mps2);
   }
   return drive;
+}
+
+std::string warning_of(const SpeedSlip& slip) {
+  return fmt::format(
+      "the speeds of the odometry are wrong by {:.2f} +- {:.2f} % for each m/s^2 of acceleration, as those of wheels that "
+      "slip when they pull and brake; they are taken without that (it looks like fixes that are late: a 'delay' that is "
+      "advised beside this may be none)",
+      100 * slip.per_mps2, 100 * slip.sigma);
 }
 
 }  // namespace waymark::drive

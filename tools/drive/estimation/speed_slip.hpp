@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/model/place.hpp>
@@ -27,5 +28,8 @@ void remove_slip(double per_mps2, PlacedDrive& drive);
 
 /// Returns a drive of one odometry whose speeds are without a slip. The acceleration is that of a second.
 [[nodiscard]] PreparedDrive without_slip(PreparedDrive drive, const SpeedSlip& slip);
+
+/// Returns the warning about speeds that slip.
+[[nodiscard]] std::string warning_of(const SpeedSlip& slip);
 
 }  // namespace waymark::drive

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/detail/median.hpp>
-#include <waymark/tools/drive/estimation/antenna_place.hpp>
 #include <waymark/tools/drive/estimation/latency.hpp>
 #include <waymark/tools/drive/estimation/noise_spread.hpp>
 #include <waymark/tools/drive/estimation/scale_priors.hpp>
@@ -208,47 +207,9 @@ std::string words_for_late_odometry(double late_s) {
       late_s, -late_s);
 }
 
-/// Returns where the antenna is, if nobody has stated it and the drive shows it. What comes late looks like an antenna
-/// further behind.
-std::optional<AntennaPlace> antenna_of(const ModeledDrive& modeled, const PreparedDrive& drive,
-                                       const TypeRegistry& registry, const std::function<void()>& between) {
-  const bool is_stated =
-      std::any_of(drive.receivers.begin(), drive.receivers.end(),
-                  [](const PreparedReceiver& receiver) { return receiver.antenna_is_stated; });
-  if (is_stated || drive.report.tells_late_quantity || modeled.noise.parameters.empty() ||
-      modeled.noise.is_poor_odometry(modeled.placed.odometry_name))
-    return std::nullopt;
-  return find_antenna_place(modeled.placed, drive.sensors, modeled.settings, registry, between);
-}
-
-std::string words_for_antenna(const AntennaPlace& antenna, const std::string& receiver) {
-  const auto side = [](double value, const char* positive, const char* negative) {
-    return value < 0 ? negative : positive;
-  };
-  const Eigen::Vector2d& at = antenna.place_m;
-  return fmt::format(
-      "the antenna of '{}' seems to be {:.2f} +- {:.2f} m {} and {:.2f} +- {:.2f} m {} the point of the vehicle whose "
-      "motion the odometry measures, but is fused as if it were there: state 'antenna: [{:.2f}, {:.2f}]' for it, or the result "
-      "is off by as much, and late or early in bends",
-      receiver, std::abs(at.x()), antenna.sigma_m.x(), side(at.x(), "ahead of", "behind"), std::abs(at.y()),
-      antenna.sigma_m.y(), side(at.y(), "to the left of", "to the right of"), at.x(), at.y());
-}
-
-std::string words_for_drift(const ClockDrift& drift, const PreparedDrive& drive) {
-  constexpr double kMillion = 1e6;
-  const double ppm = kMillion * drift.rate;
-  return fmt::format(
-      "the clock of the odometry {} by {:.1f} +- {:.1f} ppm beside that of the fixes, {:.3f} s from the first one to "
-      "the last; its readings are taken at the times of that clock, as if both agreed at the first fix",
-      ppm > 0 ? "falls behind" : "hurries", std::abs(ppm), kMillion * drift.sigma,
-      std::abs(drift.rate) * seconds_between(drive.fixes.front().stamp, drive.fixes.back().stamp));
-}
-
-std::string words_for_slip(const SpeedSlip& slip) {
-  return fmt::format(
-      "the speeds of the odometry are wrong by {:.2f} +- {:.2f} % for each m/s^2 of acceleration, as those of wheels that "
-      "slip when they pull and brake; they are taken without that",
-      100 * slip.per_mps2, 100 * slip.sigma);
+bool antenna_is_stated(const PreparedDrive& drive) {
+  return std::any_of(drive.receivers.begin(), drive.receivers.end(),
+                     [](const PreparedReceiver& receiver) { return receiver.antenna_is_stated; });
 }
 
 std::string words_for_poor_odometry(const PlacedDrive& placed) {
@@ -359,7 +320,9 @@ ModeledDrive Fusion::on_clock_of_fixes(ModeledDrive modeled, const FusionSetting
     drift = together;
   }
   modeled.clock_drift = drift;
-  if (drift.rate != 0) modeled.placed.warnings.push_back(words_for_drift(drift, drive_));
+  if (drift.rate != 0)
+    modeled.placed.warnings.push_back(
+        warning_of(drift, seconds_between(drive_.fixes.front().stamp, drive_.fixes.back().stamp)));
   return modeled;
 }
 
@@ -392,14 +355,27 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
     slip = together;
   }
   if (!freed) return completed(std::move(modeled), settings, {});
-  return Fusion(*freed, registry_, between_).completed(std::move(modeled), settings, words_for_slip(slip));
+  return Fusion(*freed, registry_, between_).completed(std::move(modeled), settings, warning_of(slip));
+}
+
+std::optional<AntennaPlace> Fusion::antenna_of(const ModeledDrive& modeled, const FusionSettings& settings) {
+  if (drive_.report.tells_late_quantity || modeled.noise.parameters.empty()) return std::nullopt;
+  const bool is_stated = antenna_is_stated(drive_);
+  // One that is stated at the point of the odometry is meant to be taken so.
+  if (is_stated && modeled.placed.fixes.front().antenna_m == Eigen::Vector2d::Zero()) return std::nullopt;
+  if (!modeled.noise.is_poor_odometry(modeled.placed.odometry_name))
+    return find_antenna_place(modeled.placed, drive_.sensors, modeled.settings, registry_, between_);
+  // An antenna that is stated on the wrong side makes a sound odometry look poor.
+  if (!is_stated) return std::nullopt;
+  const FusionSettings before = decision_on(settings);
+  return find_antenna_place(placed(before), drive_.sensors, before, registry_, between_);
 }
 
 ModeledDrive Fusion::completed(ModeledDrive modeled, const FusionSettings& settings,
                                const std::string& told) {
   // An antenna that is elsewhere looks like a clock that is wrong.
-  if (const std::optional<AntennaPlace> antenna = antenna_of(modeled, drive_, registry_, between_)) {
-    modeled.placed.warnings.push_back(words_for_antenna(*antenna, receiver_name(modeled.placed, 0)));
+  if (const std::optional<AntennaPlace> antenna = antenna_of(modeled, settings)) {
+    modeled.placed.warnings.push_back(warning_of(*antenna, receiver_name(modeled.placed, 0)));
     modeled.odometry_late_s = 0;
   } else {
     modeled = on_clock_of_fixes(std::move(modeled), settings);

@@ -34,6 +34,7 @@
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
+#include <waymark/tools/drive/estimation/antenna_place.hpp>
 #include <waymark/tools/drive/estimation/clock_drift.hpp>
 #include <waymark/tools/drive/estimation/noise.hpp>
 #include <waymark/tools/drive/estimation/speed_slip.hpp>
@@ -120,6 +121,10 @@ class Fusion {
   [[nodiscard]] ModeledDrive completed(ModeledDrive modeled, const FusionSettings& settings,
                                        const std::string& told);
   void add_deviations(ModeledDrive& modeled) const;
+  /// Returns where the antenna is, if the drive shows it elsewhere than it is taken to be. What comes late looks like an
+  /// antenna further behind.
+  [[nodiscard]] std::optional<AntennaPlace> antenna_of(const ModeledDrive& modeled,
+                                                       const FusionSettings& settings);
   /// Returns the drive with the odometry on the clock of the fixes, if its own one drifts and that is more probable. A
   /// drift that the noise hid is found in steps.
   [[nodiscard]] ModeledDrive on_clock_of_fixes(ModeledDrive modeled, const FusionSettings& settings);
