@@ -223,6 +223,7 @@ void mend_speeds(PreparedDrive& drive) {
   const std::vector<Creeping> creeping = find_creeping(drive.odometry, drive.fixes);
   if (!creeping.empty()) drive.report.warnings.push_back(warning_of(creeping, drive.odometry));
   creep(creeping, drive.odometry);
+  pass_dead_zone(drive.odometry);
   find_signs("", drive.odometry, drive);
 }
 

@@ -92,6 +92,36 @@ std::optional<double> creeping_speed(const std::vector<Fix>& fixes, Stamp from, 
   return leads_along(line->velocity, fixes, first, last) ? std::optional(speed) : std::nullopt;
 }
 
+/// Gives samples that read 0 the speed that goes on from a reading beside them, at the rate of the half second beyond
+/// it. @param step 1: later samples, -1: earlier ones
+void go_on_from(std::ptrdiff_t at, std::ptrdiff_t step, double zone_mps, std::span<OdometrySample> odometry) {
+  constexpr double kBefore_s = 0.5;
+  constexpr double kGentle = 0.3;  // m/s^2
+  constexpr double kHard = 4;
+  constexpr double kSlow = 3;  // of the zone
+  const auto size = static_cast<std::ptrdiff_t>(odometry.size());
+  const auto sample = [&](std::ptrdiff_t i) -> OdometrySample& {
+    return odometry[static_cast<std::size_t>(i)];
+  };
+  const auto away_s = [&](std::ptrdiff_t i) {
+    return std::abs(seconds_between(sample(at).stamp, sample(i).stamp));
+  };
+  const double speed = std::abs(sample(at).speed_mps);
+  if (sample(at).assumed || speed > kSlow * zone_mps) return;
+  std::ptrdiff_t beyond = at - step;
+  while (beyond >= 0 && beyond < size && away_s(beyond) < kBefore_s) beyond -= step;
+  if (beyond < 0 || beyond >= size) return;
+  const double rate =
+      std::clamp((std::abs(sample(beyond).speed_mps) - speed) / away_s(beyond), kGentle, kHard);
+  for (std::ptrdiff_t i = at + step; i >= 0 && i < size; i += step) {
+    const double left = speed - rate * away_s(i);
+    const bool read_zero = sample(i).speed_mps == 0 || sample(i).assumed;
+    if (left <= std::abs(sample(i).speed_mps) || !read_zero) return;
+    sample(i).speed_mps = std::copysign(left, sample(at).speed_mps);
+    sample(i).assumed = true;
+  }
+}
+
 }  // namespace
 
 double dead_zone_mps(std::span<const OdometrySample> odometry) {
@@ -132,6 +162,22 @@ void creep(std::span<const Creeping> found, std::span<OdometrySample> odometry) 
       sample.assumed = true;
     }
   }
+}
+
+void pass_dead_zone(std::span<OdometrySample> odometry) {
+  constexpr double kLargestZone = 2;  // m/s; a drive without slower readings leaps
+  const double zone_mps = dead_zone_mps(odometry);
+  if (zone_mps == 0 || zone_mps > kLargestZone) return;
+  std::vector<std::ptrdiff_t> stops;
+  std::vector<std::ptrdiff_t> starts;
+  for (std::size_t i = 1; i < odometry.size(); ++i) {
+    const bool was_zero = odometry[i - 1].speed_mps == 0;
+    const bool is_zero = odometry[i].speed_mps == 0;
+    if (is_zero && !was_zero) stops.push_back(static_cast<std::ptrdiff_t>(i) - 1);
+    if (was_zero && !is_zero) starts.push_back(static_cast<std::ptrdiff_t>(i));
+  }
+  for (const std::ptrdiff_t last : stops) go_on_from(last, 1, zone_mps, odometry);
+  for (const std::ptrdiff_t first : starts) go_on_from(first, -1, zone_mps, odometry);
 }
 
 std::string warning_of(std::span<const Creeping> found, std::span<const OdometrySample> odometry) {

@@ -29,6 +29,10 @@ struct Creeping : SampleRange {
 /// Gives the samples of those times the speed of the fixes, and marks them as assumed.
 void creep(std::span<const Creeping> found, std::span<OdometrySample> odometry);
 
+/// Speeds that slow down to the edge of a dead zone of 2 m/s at most go on to 0 as they came, and those that leave it
+/// come from 0: for some tenths of a second, in which the vehicle moves by decimetres. Marks those samples as assumed.
+void pass_dead_zone(std::span<OdometrySample> odometry);
+
 /// Returns the warning for all of them. @param found at least one
 [[nodiscard]] std::string warning_of(std::span<const Creeping> found,
                                      std::span<const OdometrySample> odometry);

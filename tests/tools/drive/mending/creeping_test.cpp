@@ -1,7 +1,10 @@
 // Wheel sensors that read 0 below some speed: the fixes show that the vehicle creeps.
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <random>
+#include <span>
+#include <vector>
 
 #include <waymark/tools/drive/mending/creeping.hpp>
 
@@ -82,6 +85,58 @@ TEST_CASE("creeping: a sensor without a dead zone is believed") {
   made.odometry[22].speed_mps = 0.04;
   CHECK(dead_zone_mps(made.odometry) == 0);
   CHECK(find_creeping(made.odometry, made.fixes).empty());
+}
+
+namespace {
+
+/// A minute at 6 m/s, a stop from 60 to 80 s, and a minute more: it brakes at 2 m/s^2 and starts at 1.
+double speed_with_stop(double t) {
+  if (t < 57) return 6;
+  if (t < 60) return 2 * (60 - t);
+  if (t < 80) return 0;
+  return std::min(6.0, t - 80);
+}
+
+double way_of(std::span<const OdometrySample> odometry) {
+  double way_m = 0;
+  for (std::size_t i = 1; i < odometry.size(); ++i)
+    way_m += 0.5 * (odometry[i - 1].speed_mps + odometry[i].speed_mps) *
+             seconds_between(odometry[i - 1].stamp, odometry[i].stamp);
+  return way_m;
+}
+
+}  // namespace
+
+TEST_CASE("creeping: speeds pass a dead zone as they came to its edge") {
+  const double sign = GENERATE(1.0, -1.0);
+  WindingScene made = winding_scene(
+      140, [&](double t) { return sign * speed_with_stop(t); }, [](double) { return 0.01; });
+  const double driven_m = way_of(made.odometry);
+  for (OdometrySample& sample : made.odometry)
+    if (std::abs(sample.speed_mps) < kZone) sample.speed_mps = 0;
+  // Braking it loses 0.7^2 / 4 m, starting 0.7^2 / 2.
+  CHECK(std::abs(driven_m - way_of(made.odometry)) == Approx(0.37).margin(0.1));
+  pass_dead_zone(made.odometry);
+  CHECK(way_of(made.odometry) == Approx(driven_m).margin(0.03));
+  for (const OdometrySample& sample : made.odometry) {
+    const double t = sample.stamp.seconds();
+    CHECK(sample.speed_mps == Approx(sign * speed_with_stop(t)).margin(0.02));
+    CHECK(sample.assumed == (std::abs(sample.speed_mps) > 0 && std::abs(sample.speed_mps) < kZone - 0.01));
+  }
+}
+
+TEST_CASE("creeping: speeds that reach 0 by themselves, and ones that leap to it, stay") {
+  WindingScene smooth = winding_scene(140, speed_with_stop, [](double) { return 0.01; });
+  WindingScene leap = winding_scene(
+      140, [](double t) { return t > 60 && t < 80 ? 0 : 6 + std::sin(t); }, [](double) { return 0.01; });
+  for (WindingScene* made : {&smooth, &leap}) {
+    const std::vector<OdometrySample> before = made->odometry;
+    pass_dead_zone(made->odometry);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      CHECK(made->odometry[i].speed_mps == before[i].speed_mps);
+      CHECK_FALSE(made->odometry[i].assumed);
+    }
+  }
 }
 
 }  // namespace creeping_test
