@@ -144,7 +144,8 @@ std::string remedies(const ClockOffset& offset, bool may_be_speed_alone, double 
 /// has a report of its own.
 struct Found {
   std::vector<std::string> warnings;
-  bool tells_late_quantity = false;  ///< as PrepareReport has it
+  bool tells_late_quantity = false;  ///< as PrepareReport has them
+  double moved_quantity_sigma_s = 0;
 };
 
 /// Moves the stamps of the only odometry to another clock, or tells it.
@@ -190,10 +191,12 @@ LateQuantity move_late_quantity(LateQuantity late, const DriveLogs& logs, DriveD
 std::vector<OdometrySample> without_late_quantity(const LateQuantity& late, const DriveLogs& logs,
                                                   DriveDescription& description, ClocksApart treatment,
                                                   PreparedDrive& drive, Found& found) {
+  constexpr double kEven_s = 0.02;  // readings that are held are not late evenly
   const bool moves =
       treatment == ClocksApart::move && !states_delays(config_of(drive.odometry_name, description));
   if (moves) {
     const LateQuantity moved = move_late_quantity(late, logs, description, drive);
+    found.moved_quantity_sigma_s = std::hypot(moved.sigma_s, kEven_s);
     found.warnings.push_back(
         late_quantity_warning("the odometry", moved,
                               fmt::format("its readings are moved by that; state '{}: {:.2f}' for 'odometry'",
@@ -219,6 +222,7 @@ PreparedDrive with_clock_told(PreparedDrive drive, const DriveLogs& logs, DriveD
         offset_shown(without_late_quantity(*late, logs, description, treatment, drive, found), drive.fixes);
   if (offset) treat_clock(*offset, logs, description, treatment, drive, found);
   drive.report.tells_late_quantity = found.tells_late_quantity;
+  drive.report.moved_quantity_sigma_s = found.moved_quantity_sigma_s;
   for (std::string& warning : found.warnings) drive.report.warnings.push_back(std::move(warning));
   return drive;
 }

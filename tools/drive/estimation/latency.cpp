@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -132,10 +133,14 @@ TimeOffsetSearch::Minimum TimeOffsetSearch::converge(const FusionSettings& setti
 void TimeOffsetSearch::admit_slip(const FusionSettings& settings, Minimum minimum,
                                   std::vector<std::optional<TimeOffset>>& offsets) const {
   constexpr double kUsual_per_mps2 = 0.005;
-  constexpr int kMostSteps = 4;
+  constexpr int kMostSteps = 8;
   constexpr double kReached = 0.25;
+  constexpr double kLongest = 2;
   // In units of the usual slip, which is the deviation of its prior.
   double slip = 0;
+  // The least cost is between these. Newton's steps alone leap to and fro: far from it heavy tails flatten the cost.
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
   const auto minimum_with = [&](double units) {
     CoarseDrive slipped = coarse_;
     remove_slip(units * kUsual_per_mps2, slipped.drive);
@@ -146,7 +151,9 @@ void TimeOffsetSearch::admit_slip(const FusionSettings& settings, Minimum minimu
     const Minimum more = minimum_with(slip + 1);
     const double gradient = slip + 0.5 * (more.cost - less.cost);
     const double curvature = 1 + std::max(0.0, less.cost - 2 * minimum.cost + more.cost);
-    const double step = -gradient / curvature;
+    (gradient < 0 ? low : high) = slip;
+    double step = std::clamp(-gradient / curvature, -kLongest, kLongest);
+    if (slip + step <= low || slip + step >= high) step = 0.5 * ((step < 0 ? low : high) - slip);
     slip += step;
     if (std::abs(step) < kReached || count == kMostSteps) {
       for (std::size_t g = 0; g < offsets.size(); ++g) {

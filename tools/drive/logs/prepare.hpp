@@ -78,6 +78,9 @@ struct PrepareReport {
   std::set<std::string> left_out;  ///< names of odometries that the fixes contradict
   /// a warning says that one of speed and yaw rate is late, and nothing was moved: no offset of all stamps is right
   bool tells_late_quantity = false;
+  /// how well it is known by how much the readings of one of them were moved; 0: none were. Delays of the fixes are
+  /// not known better
+  double moved_quantity_sigma_s = 0;
   std::vector<std::string> corrupt_examples;
 };
 

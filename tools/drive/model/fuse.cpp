@@ -254,7 +254,9 @@ ModeledDrive Fusion::estimated_from(PlacedDrive placed, const FusionSettings& se
     modeled.notes.push_back(std::move(note));
   if (modeled.placed.start.follows_fixes) (void)leave_out_unseen(settings, decision, modeled);
   TimeOffsetSearch delays(modeled.placed, drive_.sensors, registry_, between_);
-  const auto offsets = estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
+  auto offsets = estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
+  for (std::optional<TimeOffset>& offset : offsets)
+    if (offset) offset->sigma_s = std::hypot(offset->sigma_s, drive_.report.moved_quantity_sigma_s);
   const bool left_out = modeled.noise.is_poor_odometry(modeled.placed.odometry_name)
                             ? leave_out_unseen(settings, decision, modeled)
                             : leave_out_improbable(offsets, settings, decision, modeled);

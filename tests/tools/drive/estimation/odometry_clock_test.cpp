@@ -89,6 +89,14 @@ TEST_CASE(
   CHECK(told(stated).empty());
 }
 
+TEST_CASE("late fixes: a delay is known no better than how far a late quantity was moved") {
+  PreparedDrive drive = bends(-0.02);
+  const auto delay_s = [&] { return fuse(drive, {}, registry()).model.placed.time_offsets_s.front(); };
+  CHECK(delay_s() == Approx(0.02).margin(0.01));
+  drive.report.moved_quantity_sigma_s = 0.03;
+  CHECK(delay_s() == 0);
+}
+
 TEST_CASE("antenna: one that is not stated is told with its place, and is no clock that is wrong") {
   for (const Eigen::Vector2d& antenna : {Eigen::Vector2d(1.5, 0.4), Eigen::Vector2d(-0.8, -0.6)}) {
     const PreparedDrive drive = bends(0, 0, nullptr, antenna);
