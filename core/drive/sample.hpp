@@ -34,6 +34,8 @@ struct OdometrySample {
   /// Error of the turn that this reading itself has, as white noise, rad^2/s: that of a yaw rate from the readings
   /// of a direction. The noise of the odometry's model comes on top.
   double turn_variance_per_s = 0;
+  /// Error of the distance that this reading itself has, m^2/s: that of a speed where the sensor shows none.
+  double distance_variance_per_s = 0;
 };
 
 /// The motion between two consecutive nodes of a drive. Speed and yaw rate are means over dt.

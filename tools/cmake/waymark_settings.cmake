@@ -108,11 +108,10 @@ endfunction()
 # instructions, and a build a quarter less time.
 function(waymark_cold target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
-  target_precompile_headers(${target} REUSE_FROM waymark_precompiled)
   # clang refuses a header of another visibility, such as a plugin has.
   get_target_property(type ${target} TYPE)
-  if(type STREQUAL MODULE_LIBRARY AND CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-    set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)
+  if(NOT (type STREQUAL MODULE_LIBRARY AND CMAKE_CXX_COMPILER_ID MATCHES "Clang"))
+    target_precompile_headers(${target} REUSE_FROM waymark_precompiled)
   endif()
 endfunction()
 

@@ -120,8 +120,8 @@ bool map_columns(const LogInspection& log, LogRequest& request) {
   for (const auto& [quantity, column] : columns) {
     request.columns[quantity] = {reference_of(*column), column->proposal.unit, column->proposal.convention,
                                  column->proposal.scale, column->proposal.missing};
-    if (quantity == "accuracy") request.accuracy = column->proposal.meaning;
   }
+  request.accuracy = named_meaning(columns);
   if (request.stream == StreamKind::gnss)
     return (columns.contains("latitude") && columns.contains("longitude")) ||
            (columns.contains("ecef_x") && columns.contains("ecef_y") && columns.contains("ecef_z"));
@@ -389,6 +389,12 @@ const ColumnSummary* receiver_column(const LogInspection& log) {
   for (const ColumnSummary& column : log.table->columns)
     if (!column.receivers.empty()) return &column;
   return nullptr;
+}
+
+AccuracyMeaning named_meaning(const std::map<std::string, const ColumnSummary*>& columns) {
+  const auto column = columns.find("accuracy");
+  const bool has_axes = columns.contains("sigma_east") || columns.contains("accuracy_east");
+  return column == columns.end() || has_axes ? AccuracyMeaning::automatic : column->second->proposal.meaning;
 }
 
 std::map<std::string, const ColumnSummary*> proposed_columns(const LogInspection& log, StreamKind stream) {

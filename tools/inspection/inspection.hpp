@@ -81,6 +81,9 @@ struct InspectionOptions {
 /// Returns the columns that are proposed for a stream of a table or a bus, by quantity.
 [[nodiscard]] std::map<std::string, const ColumnSummary*> proposed_columns(const LogInspection& log,
                                                                            StreamKind stream);
+/// Returns what the accuracy among such columns means by its name. Those of axes come before it, and their names tell
+/// nothing of it.
+[[nodiscard]] AccuracyMeaning named_meaning(const std::map<std::string, const ColumnSummary*>& columns);
 /// Returns the column that tells the receivers of a table apart; null if there is none. Only the rows of the first
 /// one are read.
 [[nodiscard]] const ColumnSummary* receiver_column(const LogInspection& log);

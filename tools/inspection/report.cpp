@@ -169,6 +169,7 @@ std::string proposal_text(const ColumnProposal& proposal) {
   std::string text = proposal.quantity;
   if (!proposal.unit.empty()) text += ", " + proposal.unit;
   if (!proposal.convention.empty()) text += ", " + proposal.convention;
+  if (proposal.scale != 1) text += fmt::format(", times {:g}", proposal.scale);
   if (!proposal.remark.empty()) text += " (check: " + proposal.remark + ")";
   return text;
 }

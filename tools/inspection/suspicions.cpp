@@ -90,12 +90,12 @@ void judge_places(const FixSummary& fixes, const LogClock& clock, std::vector<st
                     fixes.resolution_m));
 }
 
-void judge_accuracy(const FixSummary& fixes, std::vector<std::string>& sentences) {
+void judge_accuracy(const FixSummary& fixes, bool is_named, std::vector<std::string>& sentences) {
   if (fixes.with_accuracy < kFewComparisons) return;
   if (fixes.accuracy_constant)
     sentences.push_back(fmt::format("the accuracy never changes: sigma is {:.4g} m in all {} fixes",
                                     fixes.east.median, fixes.with_accuracy));
-  else if (fixes.axes_equal)
+  else if (fixes.axes_equal && !is_named)
     sentences.emplace_back(
         "east and north have the same accuracy in every fix, so it is a radius and no sigma per "
         "axis; state its 'meaning' under 'accuracy'");
@@ -152,7 +152,9 @@ std::vector<std::string> suspicions_of(const LogInspection& log, Stamp now) {
       sentences.push_back(
           fmt::format("the receiver has no fix in {} of {} records", log.without_fix, log.records));
     judge_places(fixes, log.clock, sentences);
-    judge_accuracy(fixes, sentences);
+    const bool is_named =
+        named_meaning(proposed_columns(log, StreamKind::gnss)) != AccuracyMeaning::automatic;
+    judge_accuracy(fixes, is_named, sentences);
     judge_speed(fixes, sentences);
   }
   if (log.odometry) {

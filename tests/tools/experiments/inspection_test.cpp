@@ -358,7 +358,12 @@ TEST_CASE("inspection: names of accuracies say what share of the errors they hol
   };
   const std::string accuracy = "accuracy";
   CHECK(told("2DRMS [m]") == std::tuple(accuracy, AccuracyMeaning::drms, 0.5));
-  CHECK(told("cep_m") == std::tuple(accuracy, AccuracyMeaning::cep50, 1.0));
+  for (const char* name : {"2dRMS", "h_acc_2drms_m", "2 drms (m)"})
+    CHECK(told(name) == std::tuple(accuracy, AccuracyMeaning::drms, 0.5));
+  for (const char* name : {"cep_m", "CEP50", "hacc_cep"})
+    CHECK(told(name) == std::tuple(accuracy, AccuracyMeaning::cep50, 1.0));
+  for (const char* name : {"CEP (95%)", "accuracy_cep_95", "accuracy_cep95"})
+    CHECK(told(name) == std::tuple(accuracy, AccuracyMeaning::drms, 0.578));
   CHECK(told("accuracy_drms") == std::tuple(accuracy, AccuracyMeaning::drms, 1.0));
   CHECK(told("hacc_m") == std::tuple(accuracy, AccuracyMeaning::automatic, 1.0));
   // 95 % of normal errors of 1 per axis are within sqrt(-2 log 0.05); their drms is sqrt(2).
@@ -370,6 +375,9 @@ TEST_CASE("inspection: names of accuracies say what share of the errors they hol
   CHECK(rate.quantity == "gyro_z");
   CHECK(rate.unit == "deg/s");
   CHECK(rate.scale == 1e-3);
+  CHECK(propose_quantity("yaw [mdps]").quantity == "yaw_rate");
+  CHECK(propose_quantity("yaw [mdps]").scale == 1e-3);
+  CHECK(propose_quantity("v [mrad/s]").quantity.empty());
 }
 
 TEST_CASE("inspection: the meaning of an accuracy is proposed as its name tells") {
@@ -385,6 +393,17 @@ TEST_CASE("inspection: the meaning of an accuracy is proposed as its name tells"
   const std::string yaml = drive_yaml(propose_drive(logs), logs, waymark_test::scratch_dir());
   CHECK(has(yaml, "meaning: drms\n"));
   CHECK(has(yaml, "scale: 0.5"));
+}
+
+TEST_CASE("inspection: the name of a radius says nothing of the accuracies of axes") {
+  std::string text = "time,lat,lon,epx,epy,cep\n";
+  for (int i = 0; i < 60; ++i) {
+    const Row row = row_at(i);
+    text += fmt::format("{:.3f},{:.8f},{:.8f},4,{},5\n", row.t, row.latitude, row.longitude, 4 + i % 3);
+  }
+  const std::vector<LogInspection> logs{inspect(write("axes.csv", text))};
+  CHECK(logs[0].fixes->east.median == Approx(2).epsilon(0.04));  // 95 % of an axis
+  CHECK_FALSE(has(drive_yaml(propose_drive(logs), logs, waymark_test::scratch_dir()), "cep50"));
 }
 
 TEST_CASE("inspection: CAN frames without a DBC are ids with rates and lengths") {

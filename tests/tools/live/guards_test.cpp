@@ -211,4 +211,25 @@ TEST_CASE("a receiver's usual claim is that of the drive so far, not of the last
   CHECK(usual_after(400, 1.5) == Approx(1.5));
 }
 
+TEST_CASE("a receiver that tells the quality but no accuracy of code fixes has them beside the fixed ones",
+          "[live]") {
+  const drive::DriveDescription description = waymark_test::live_description();
+  const drive::FusionSettings settings = waymark_test::live_fusion();
+  const LiveSettings live;
+  FixJudge judge(description, settings, live, waymark_test::registry());
+  Fix fix;
+  fix.stamp = Stamp::from_seconds(1000);
+  fix.told.quality = FixQuality::single;
+  fix.accuracy_claimed = false;
+  fix.covariance = 9 * Eigen::Matrix2d::Identity();
+  CHECK(judge.accept(fix).reference_m() == 0);
+  fix.stamp = fix.stamp.later(1);
+  fix.told.quality = FixQuality::fixed;
+  fix.accuracy_claimed = true;
+  fix.covariance = 0.02 * 0.02 * Eigen::Matrix2d::Identity();
+  const ClaimedAccuracies both = judge.accept(fix);
+  CHECK(both.reference_m() == Approx(3));
+  CHECK(both.of(SolutionKind::fixed) == Approx(0.02));
+}
+
 }  // namespace guards_test

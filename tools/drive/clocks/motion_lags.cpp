@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -43,6 +42,9 @@ class WindowFit {
   [[nodiscard]] double usual(const PerFix& residuals) const;
   /// Fixes with large residuals count less, by Cauchy's loss.
   void weigh(const PerFix& residuals);
+  void leave_out(std::size_t window) {
+    windows_.erase(windows_.begin() + static_cast<std::ptrdiff_t>(window));
+  }
 
  private:
   void add(double moment_s, const Fix& fix);
@@ -163,18 +165,36 @@ std::array<PerFix, kUnknowns> slopes_at(const WindowFit& fit, const LagUnknowns&
   return slopes;
 }
 
+/// What windows tell of a lag.
+struct Telling {
+  double sum = 0;      ///< of their information
+  double squares = 0;  ///< of that of each
+  double largest = 0;
+  std::size_t loudest = 0;  ///< the window that tells most
+
+  void add(double information, std::size_t window) {
+    sum += information;
+    squares += information * information;
+    if (information <= largest) return;
+    largest = information;
+    loudest = window;
+  }
+  /// How many windows tell of it, as if each told as much.
+  [[nodiscard]] double windows() const { return squares > 0 ? sum * sum / squares : 0; }
+};
+
 /// The normal equations of one step, in units of the usual residual.
 struct LagEquations {
   Information information;
   LagUnknowns gradient;
-  Information spread;                         ///< of the gradient, from its parts by window
-  LagUnknowns squares = LagUnknowns::Zero();  ///< of what each window adds to the diagonal of the information
+  Information spread;                ///< of the gradient, from its parts by window
+  std::array<Telling, 2> telling{};  ///< of the lags
 
-  void add(const WindowFit& fit, const WindowFit::Window& window, const PerFix& residuals,
+  void add(const WindowFit& fit, std::size_t window, const PerFix& residuals,
            const std::array<PerFix, kUnknowns>& slopes, double usual_m) {
     LagUnknowns part = LagUnknowns::Zero();
     Information own = Information::Zero();
-    for (std::size_t i = window.first; i < window.end; ++i) {
+    for (std::size_t i = fit.windows()[window].first; i < fit.windows()[window].end; ++i) {
       Eigen::Matrix<double, 2, kUnknowns> slope;
       for (int k = 0; k < kUnknowns; ++k) slope.col(k) = slopes[static_cast<std::size_t>(k)][i];
       const double weight = fit.weight(i) / (usual_m * usual_m);
@@ -182,9 +202,10 @@ struct LagEquations {
       part += weight * slope.transpose() * residuals[i];
     }
     information += own;
-    squares += own.diagonal().cwiseAbs2();
     gradient += part;
     spread += part * part.transpose();
+    telling[0].add(own(speed_lag_s, speed_lag_s), window);
+    telling[1].add(own(yaw_rate_lag_s, yaw_rate_lag_s), window);
   }
 };
 
@@ -193,15 +214,43 @@ LagEquations equations_at(const WindowFit& fit, const LagUnknowns& unknowns, con
   const auto slopes = slopes_at(fit, unknowns);
   const double usual_m = fit.usual(residuals);
   LagEquations equations{prior, prior * unknowns, prior};
-  for (const WindowFit::Window& window : fit.windows())
+  for (std::size_t window = 0; window < fit.windows().size(); ++window)
     equations.add(fit, window, residuals, slopes, usual_m);
   return equations;
 }
 
-/// Returns how many windows tell of a lag, as if each told as much: a single bend has no spread.
-double telling(const LagEquations& equations, Unknown lag) {
-  const double sum = equations.information(lag, lag);
-  return sum * sum / std::max(equations.squares[lag], std::numeric_limits<double>::min());
+/// The lags that fit the windows best.
+struct BestFit {
+  MotionLags lags;
+  Telling least;  ///< of the lag of which fewer windows tell
+};
+
+std::optional<BestFit> best_fit(WindowFit& fit, const Information& prior) {
+  constexpr int kMostSteps = 10;
+  constexpr double kLongestStep_s = 0.3;
+  constexpr double kConverged_s = 0.001;
+  // What it costs to know the spread from few windows.
+  const auto windows = static_cast<double>(fit.windows().size());
+  const double few = windows / (windows - 3);
+  LagUnknowns unknowns = LagUnknowns::Zero();
+  BestFit best;
+  for (int i = 0; i < kMostSteps; ++i) {
+    fit.weigh(fit.residuals(unknowns));
+    const LagEquations equations = equations_at(fit, unknowns, prior);
+    const Information inverse = equations.information.inverse();
+    LagUnknowns step = -inverse * equations.gradient;
+    for (const Unknown lag : {speed_lag_s, yaw_rate_lag_s})
+      step[lag] = std::clamp(step[lag], -kLongestStep_s, kLongestStep_s);
+    unknowns += step;
+    if (!(unknowns.head<2>().cwiseAbs().maxCoeff() < kLargestLag_s)) return std::nullopt;
+    const Information covariance = few * inverse * equations.spread * inverse;
+    best.lags = {unknowns[speed_lag_s], unknowns[yaw_rate_lag_s], covariance.topLeftCorner<2, 2>(),
+                 unknowns[arm_m]};
+    const auto& [speed, yaw_rate] = equations.telling;
+    best.least = speed.windows() < yaw_rate.windows() ? speed : yaw_rate;
+    if (step.head<2>().cwiseAbs().maxCoeff() < kConverged_s) break;
+  }
+  return best;
 }
 
 }  // namespace
@@ -212,37 +261,20 @@ double MotionLags::difference_sigma_s() const {
 
 std::optional<MotionLags> estimate_motion_lags(const std::vector<OdometrySample>& odometry,
                                                const std::vector<const Fix*>& fixes, double arm_sigma_m) {
-  constexpr int kMostSteps = 10;
-  constexpr double kLongestStep_s = 0.3;
-  constexpr double kConverged_s = 0.001;
   constexpr double kFewestTelling = 4;
+  constexpr int kMostLeftOut = 3;
   if (odometry.size() < 2 || fixes.empty()) return std::nullopt;
   WindowFit fit(odometry, fixes);
-  if (fit.windows().size() < kFewestWindows) return std::nullopt;
   const LagUnknowns prior_sigma{{1e3, 1e3, 0.2, 0.1, arm_sigma_m, 0.2}};
   const Information prior = prior_sigma.cwiseAbs2().cwiseInverse().asDiagonal();
-  // What it costs to know the spread from few windows.
-  const auto windows = static_cast<double>(fit.windows().size());
-  const double few = windows / (windows - 3);
-  LagUnknowns unknowns = LagUnknowns::Zero();
-  Information covariance = Information::Zero();
-  double fewest = 0;
-  for (int i = 0; i < kMostSteps; ++i) {
-    fit.weigh(fit.residuals(unknowns));
-    const LagEquations equations = equations_at(fit, unknowns, prior);
-    const Information inverse = equations.information.inverse();
-    LagUnknowns step = -inverse * equations.gradient;
-    for (const Unknown lag : {speed_lag_s, yaw_rate_lag_s})
-      step[lag] = std::clamp(step[lag], -kLongestStep_s, kLongestStep_s);
-    unknowns += step;
-    if (!(unknowns.head<2>().cwiseAbs().maxCoeff() < kLargestLag_s)) return std::nullopt;
-    covariance = few * inverse * equations.spread * inverse;
-    fewest = std::min(telling(equations, speed_lag_s), telling(equations, yaw_rate_lag_s));
-    if (step.head<2>().cwiseAbs().maxCoeff() < kConverged_s) break;
+  for (int left_out = 0; left_out <= kMostLeftOut; ++left_out) {
+    if (fit.windows().size() < kFewestWindows) break;
+    const std::optional<BestFit> best = best_fit(fit, prior);
+    if (!best) break;
+    if (best->least.windows() >= kFewestTelling) return best->lags;
+    fit.leave_out(best->least.loudest);
   }
-  if (fewest < kFewestTelling) return std::nullopt;
-  return MotionLags{unknowns[speed_lag_s], unknowns[yaw_rate_lag_s], covariance.topLeftCorner<2, 2>(),
-                    unknowns[arm_m]};
+  return std::nullopt;
 }
 
 }  // namespace waymark::drive

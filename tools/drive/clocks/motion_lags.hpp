@@ -35,8 +35,8 @@ struct MotionLags {
 /// @param odometry sorted, two samples at least
 /// @param fixes of one receiver, sorted by stamp
 /// @param arm_sigma_m how well the place of the antenna along the vehicle is known
-/// @return empty: there are fewer than 8 windows of 20 s with fixes, fewer than 4 of them tell of one of the lags
-/// (one bend after a tunnel says what the fixes in it say), or no lags within reach
+/// @return empty: there are fewer than 8 windows of 20 s with fixes, fewer than 4 of them tell of one of the lags, even
+/// without the three that tell most (one bend after a tunnel says what the fixes in it say), or no lags are within reach
 [[nodiscard]] std::optional<MotionLags> estimate_motion_lags(const std::vector<OdometrySample>& odometry,
                                                              const std::vector<const Fix*>& fixes,
                                                              double arm_sigma_m);

@@ -184,10 +184,11 @@ std::string warning_of(const AntennaPlace& antenna, const std::string& receiver)
         "the antenna of '{}' seems to be {}, but is fused as if it were there: {} for it, or the result is off by as "
         "much, and late or early in bends",
         receiver, place, cure);
+  const bool is_mirrored = (antenna.taken_m.array() * at.array() < -0.04).any();
   return fmt::format(
-      "the antenna of '{}' is stated at [{:.2f}, {:.2f}], but the drive shows it {}: check the signs (ahead and to the "
-      "left are positive) and the point that it is measured from, or {}",
-      receiver, antenna.taken_m.x(), antenna.taken_m.y(), place, cure);
+      "the antenna of '{}' is stated at [{:.2f}, {:.2f}], but the drive shows it {}: check {}the point that it is measured from, or {}",
+      receiver, antenna.taken_m.x(), antenna.taken_m.y(), place,
+      is_mirrored ? "the signs (ahead and to the left are positive) and " : "", cure);
 }
 
 }  // namespace waymark::drive

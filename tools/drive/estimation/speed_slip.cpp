@@ -42,8 +42,8 @@ PreparedDrive without_slip(PreparedDrive drive, const SpeedSlip& slip) {
 std::string warning_of(const SpeedSlip& slip) {
   return fmt::format(
       "the speeds of the odometry are wrong by {:.2f} +- {:.2f} % for each m/s^2 of acceleration, as those of wheels that "
-      "slip when they pull and brake; they are taken without that (it looks like fixes that are late: a 'delay' that is "
-      "advised beside this may be none)",
+      "slip when they pull and brake; they are taken without that (it looks like fixes that are late: where a 'delay' "
+      "is advised too, it may be none)",
       100 * slip.per_mps2, 100 * slip.sigma);
 }
 

@@ -143,6 +143,12 @@ void leave_out_carried(const std::string& source, std::vector<OdometrySample>& s
   leave_out(carried, samples);
 }
 
+/// @param source its name and ": ", of several
+void pass_zone(const std::string& source, std::vector<OdometrySample>& samples, PrepareReport& report) {
+  if (const PassedZone passed = pass_dead_zone(samples); passed.edges > 0)
+    report.notes.push_back(source + note_of(passed));
+}
+
 /// Wrong samples of one of several sources are left out: the others measure the motion.
 void leave_out_wrong(PreparedDrive& drive) {
   for (PreparedOdometry& source : drive.relative) {
@@ -164,6 +170,7 @@ void leave_out_wrong(PreparedDrive& drive) {
     const std::vector<Creeping> creeping = find_creeping(source.samples, drive.fixes);
     if (!creeping.empty()) drive.report.warnings.push_back(name + warning_of(creeping, source.samples));
     leave_out(creeping, source.samples);
+    pass_zone(name, source.samples, drive.report);
     find_signs(name, source.samples, drive);
   }
 }
@@ -223,7 +230,7 @@ void mend_speeds(PreparedDrive& drive) {
   const std::vector<Creeping> creeping = find_creeping(drive.odometry, drive.fixes);
   if (!creeping.empty()) drive.report.warnings.push_back(warning_of(creeping, drive.odometry));
   creep(creeping, drive.odometry);
-  pass_dead_zone(drive.odometry);
+  pass_zone("", drive.odometry, drive.report);
   find_signs("", drive.odometry, drive);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <optional>
 
@@ -92,34 +93,73 @@ std::optional<double> creeping_speed(const std::vector<Fix>& fixes, Stamp from, 
   return leads_along(line->velocity, fixes, first, last) ? std::optional(speed) : std::nullopt;
 }
 
-/// Gives samples that read 0 the speed that goes on from a reading beside them, at the rate of the half second beyond
-/// it. @param step 1: later samples, -1: earlier ones
-void go_on_from(std::ptrdiff_t at, std::ptrdiff_t step, double zone_mps, std::span<OdometrySample> odometry) {
+constexpr double kHard = 4;       // m/s^2
+constexpr double kStands = 0.01;  // m/s
+
+/// Where the readings of a vehicle that slows down end at a dead zone, or one that starts shows its first.
+struct ZoneEdge {
+  std::ptrdiff_t at = 0;    ///< the reading beside those of 0
+  std::ptrdiff_t step = 1;  ///< to those: 1: later, -1: earlier
+  double rate = 0;          ///< by which it slows down in the half second before, m/s^2
+  double speed_mps = 0;     ///< in the zone, at the first reading of 0
+};
+
+std::optional<ZoneEdge> zone_edge(std::ptrdiff_t at, std::ptrdiff_t step, double zone_mps,
+                                  std::span<const OdometrySample> odometry) {
   constexpr double kBefore_s = 0.5;
-  constexpr double kGentle = 0.3;  // m/s^2
-  constexpr double kHard = 4;
-  constexpr double kSlow = 3;  // of the zone
+  constexpr double kGentle = 0.3;  // m/s^2; slower changes say nothing
+  constexpr double kSeen = 0.5;    // of the zone: what may pass between two readings
+  constexpr double kInside = 0.3;  // of the zone
   const auto size = static_cast<std::ptrdiff_t>(odometry.size());
-  const auto sample = [&](std::ptrdiff_t i) -> OdometrySample& {
-    return odometry[static_cast<std::size_t>(i)];
-  };
+  const auto sample = [&](std::ptrdiff_t i) { return odometry[static_cast<std::size_t>(i)]; };
   const auto away_s = [&](std::ptrdiff_t i) {
     return std::abs(seconds_between(sample(at).stamp, sample(i).stamp));
   };
   const double speed = std::abs(sample(at).speed_mps);
-  if (sample(at).assumed || speed > kSlow * zone_mps) return;
   std::ptrdiff_t beyond = at - step;
   while (beyond >= 0 && beyond < size && away_s(beyond) < kBefore_s) beyond -= step;
-  if (beyond < 0 || beyond >= size) return;
-  const double rate =
-      std::clamp((std::abs(sample(beyond).speed_mps) - speed) / away_s(beyond), kGentle, kHard);
-  for (std::ptrdiff_t i = at + step; i >= 0 && i < size; i += step) {
-    const double left = speed - rate * away_s(i);
-    const bool read_zero = sample(i).speed_mps == 0 || sample(i).assumed;
-    if (left <= std::abs(sample(i).speed_mps) || !read_zero) return;
-    sample(i).speed_mps = std::copysign(left, sample(at).speed_mps);
-    sample(i).assumed = true;
+  if (beyond < 0 || beyond >= size || sample(at).assumed) return std::nullopt;
+  const double rate = std::min(kHard, (std::abs(sample(beyond).speed_mps) - speed) / away_s(beyond));
+  const double passed = rate * away_s(at + step);
+  const double left = std::min(speed - passed, zone_mps);
+  const bool leaps = speed - kHard * away_s(at + step) > zone_mps;
+  if (leaps || rate < kGentle || passed > kSeen * zone_mps || left < kInside * zone_mps) return std::nullopt;
+  return ZoneEdge{at, step, rate, left};
+}
+
+/// Tells whether readings differ by less than half the zone: one as large as the steps of the readings is rounding.
+bool is_finer_than(double zone_mps, std::span<const OdometrySample> odometry) {
+  constexpr double kShare = 0.1;
+  double changes = 0;
+  double small = 0;
+  for (std::size_t i = 1; i < odometry.size(); ++i) {
+    const double change = std::abs(odometry[i].speed_mps - odometry[i - 1].speed_mps);
+    if (change == 0 || odometry[i].speed_mps == 0 || odometry[i - 1].speed_mps == 0) continue;
+    ++changes;
+    small += change < 0.5 * zone_mps ? 1 : 0;
   }
+  return small > kShare * changes;
+}
+
+/// Gives the readings of 0 behind an edge the speed that goes on. @returns its way, m
+double go_on(const ZoneEdge& edge, std::span<OdometrySample> odometry) {
+  const auto size = static_cast<std::ptrdiff_t>(odometry.size());
+  const auto sample = [&](std::ptrdiff_t i) -> OdometrySample& {
+    return odometry[static_cast<std::size_t>(i)];
+  };
+  // The way of an even ramp, known to a half.
+  const double way_m = 0.5 * edge.speed_mps * edge.speed_mps / edge.rate;
+  const double variance_per_s = 0.25 * way_m * way_m / (edge.speed_mps / edge.rate);
+  const std::ptrdiff_t first = edge.at + edge.step;
+  for (std::ptrdiff_t i = first; i >= 0 && i < size; i += edge.step) {
+    const double since_s = std::abs(seconds_between(sample(first).stamp, sample(i).stamp));
+    const double left = edge.speed_mps - edge.rate * since_s;
+    const bool read_zero = sample(i).speed_mps == 0 || sample(i).distance_variance_per_s > 0;
+    if (left <= std::max(kStands, std::abs(sample(i).speed_mps)) || !read_zero) break;
+    sample(i).speed_mps = std::copysign(left, sample(edge.at).speed_mps);
+    sample(i).distance_variance_per_s = variance_per_s;
+  }
+  return way_m;
 }
 
 }  // namespace
@@ -164,20 +204,32 @@ void creep(std::span<const Creeping> found, std::span<OdometrySample> odometry) 
   }
 }
 
-void pass_dead_zone(std::span<OdometrySample> odometry) {
+PassedZone pass_dead_zone(std::span<OdometrySample> odometry) {
   constexpr double kLargestZone = 2;  // m/s; a drive without slower readings leaps
-  const double zone_mps = dead_zone_mps(odometry);
-  if (zone_mps == 0 || zone_mps > kLargestZone) return;
-  std::vector<std::ptrdiff_t> stops;
-  std::vector<std::ptrdiff_t> starts;
+  constexpr std::size_t kFewestEdges = 5;
+  PassedZone passed{dead_zone_mps(odometry), 0, 0};
+  if (passed.zone_mps == 0 || passed.zone_mps > kLargestZone || !is_finer_than(passed.zone_mps, odometry))
+    return passed;
+  std::vector<ZoneEdge> edges;
+  std::size_t changes = 0;
   for (std::size_t i = 1; i < odometry.size(); ++i) {
     const bool was_zero = odometry[i - 1].speed_mps == 0;
-    const bool is_zero = odometry[i].speed_mps == 0;
-    if (is_zero && !was_zero) stops.push_back(static_cast<std::ptrdiff_t>(i) - 1);
-    if (was_zero && !is_zero) starts.push_back(static_cast<std::ptrdiff_t>(i));
+    if (was_zero == (odometry[i].speed_mps == 0)) continue;
+    ++changes;
+    const auto at = static_cast<std::ptrdiff_t>(was_zero ? i : i - 1);
+    if (const auto edge = zone_edge(at, was_zero ? -1 : 1, passed.zone_mps, odometry)) edges.push_back(*edge);
   }
-  for (const std::ptrdiff_t last : stops) go_on_from(last, 1, zone_mps, odometry);
-  for (const std::ptrdiff_t first : starts) go_on_from(first, -1, zone_mps, odometry);
+  if (edges.size() < kFewestEdges || 2 * edges.size() < changes) return passed;
+  for (const ZoneEdge& edge : edges) passed.way_m += go_on(edge, odometry);
+  passed.edges = edges.size();
+  return passed;
+}
+
+std::string note_of(const PassedZone& passed) {
+  return fmt::format(
+      "the speed of the odometry reads 0 below {:.2g} m/s; at {} stops and starts it is taken to go on as it came there, "
+      "by {:.2g} m in all",
+      passed.zone_mps, passed.edges, passed.way_m);
 }
 
 std::string warning_of(std::span<const Creeping> found, std::span<const OdometrySample> odometry) {

@@ -361,16 +361,25 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
 }
 
 std::optional<AntennaPlace> Fusion::antenna_of(const ModeledDrive& modeled, const FusionSettings& settings) {
+  constexpr double kStatedWithin_m =
+      0.5;  // rear wheels that slip sideways in bends move the point of the odometry
+  constexpr double kStatedShare = 1.0 / 3;
   if (drive_.report.tells_late_quantity || modeled.noise.parameters.empty()) return std::nullopt;
-  const bool is_stated = antenna_is_stated(drive_);
+  const bool is_poor = modeled.noise.is_poor_odometry(modeled.placed.odometry_name);
+  if (!antenna_is_stated(drive_))
+    return is_poor
+               ? std::nullopt
+               : find_antenna_place(modeled.placed, drive_.sensors, modeled.settings, registry_, between_);
   // One that is stated at the point of the odometry is meant to be taken so.
-  if (is_stated && modeled.placed.fixes.front().antenna_m == Eigen::Vector2d::Zero()) return std::nullopt;
-  if (!modeled.noise.is_poor_odometry(modeled.placed.odometry_name))
-    return find_antenna_place(modeled.placed, drive_.sensors, modeled.settings, registry_, between_);
-  // An antenna that is stated on the wrong side makes a sound odometry look poor.
-  if (!is_stated) return std::nullopt;
+  const Eigen::Vector2d stated_m = drive_.receivers.front().antenna_m;
+  if (stated_m == Eigen::Vector2d::Zero()) return std::nullopt;
+  // One that is stated on the wrong side makes a sound odometry look poor.
   const FusionSettings before = decision_on(settings);
-  return find_antenna_place(placed(before), drive_.sensors, before, registry_, between_);
+  const auto found =
+      is_poor ? find_antenna_place(placed(before), drive_.sensors, before, registry_, between_)
+              : find_antenna_place(modeled.placed, drive_.sensors, modeled.settings, registry_, between_);
+  const double least_m = std::max(kStatedWithin_m, kStatedShare * stated_m.norm());
+  return found && (found->place_m - stated_m).norm() > least_m ? found : std::nullopt;
 }
 
 ModeledDrive Fusion::completed(ModeledDrive modeled, const FusionSettings& settings,

@@ -131,6 +131,9 @@ Interval motion_between(const OdometrySample& left, const OdometrySample& right,
                          grid_scale, twist);
   const double turn_variance = 0.5 * (left.turn_variance_per_s + right.turn_variance_per_s) * twist.dt_s;
   twist.turn_sigma_rad = std::hypot(twist.turn_sigma_rad, std::sqrt(turn_variance));
+  const double distance_variance =
+      0.5 * (left.distance_variance_per_s + right.distance_variance_per_s) * twist.dt_s;
+  twist.distance_sigma_m = std::hypot(twist.distance_sigma_m, grid_scale * std::sqrt(distance_variance));
   return twist;
 }
 

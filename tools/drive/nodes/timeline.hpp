@@ -52,7 +52,7 @@ struct Timeline {
 /// acceleration and angular acceleration wander (white jerk of density s), a second difference over dt has
 /// the variance 2/3 s dt^3, and the error of the trapezoid s dt^5 / 120. So the variance of an integral
 /// is (second difference times dt)^2 / 80, the mean of those at both ends. The errors that the readings have
-/// themselves (OdometrySample::turn_variance_per_s) come on top.
+/// themselves (OdometrySample::turn_variance_per_s, distance_variance_per_s) come on top.
 /// @param grid_scale grid metres per metre on the ground
 /// @param gap_s a longer interval is bridged
 /// @param before, after the samples around them; null: there is none, or it is not known yet

@@ -387,18 +387,11 @@ class Writer {
     return {};
   }
 
-  /// Returns the meaning of the accuracy that the name of its column tells.
-  static std::string named_meaning(const LogInspection& log) {
-    const auto columns = proposed_columns(log, StreamKind::gnss);
-    const auto column = columns.find("accuracy");
-    if (column == columns.end() || column->second->proposal.meaning == AccuracyMeaning::automatic) return {};
-    return std::string(formats::to_string(column->second->proposal.meaning));
-  }
-
   void accuracy(const LogInspection& log, const std::string& indent) {
     const FixSummary& fixes = *log.fixes;
-    const std::string named = named_meaning(log);
-    const std::string meaning = named.empty() ? assumed_meaning(log) : named;
+    const AccuracyMeaning named = named_meaning(proposed_columns(log, StreamKind::gnss));
+    const bool is_named = named != AccuracyMeaning::automatic;
+    const std::string meaning = is_named ? std::string(formats::to_string(named)) : assumed_meaning(log);
     const std::size_t usual = fixes_with_usual_sigma(fixes);
     const std::size_t lacking = fixes.fixes - fixes.with_accuracy - usual;
     if (usual > 0)
@@ -409,7 +402,7 @@ class Writer {
     line(indent + "accuracy:");
     if (!meaning.empty())
       line(fmt::format("{}  meaning: {}", indent, meaning),
-           named.empty() ? "CHECK: assumed; 95, 1sigma, drms or cep50" : "");
+           is_named ? "" : "CHECK: assumed; 95, 1sigma, drms or cep50");
     if (lacking > 0)
       line(indent + "  default_sigma: 5",
            fmt::format("CHECK: m per axis, invented: {} of {} fixes have no accuracy", lacking, fixes.fixes));

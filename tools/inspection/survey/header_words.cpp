@@ -33,11 +33,10 @@ constexpr std::array kKnown{
     Known{"height",
           "h|alt|altitude|height|ele|elevation|ellipsoidal height|height ellipsoid|gps alt|gps altitude|hmsl|"
           "höhe|hoehe|hauteur|altura|altitud"},
-    Known{
-        "accuracy",
-        "accuracy|hacc|h acc|h accuracy|eph|pos acc|position accuracy|pos accuracy|horizontal accuracy|acc "
-        "h|gps accuracy|hpe|epe|accuracy horizontal|genauigkeit|précision|precision|precisión|"
-        "drms|2drms|2 drms|cep|cep50|cep 50|r95|cep95|cep 95|accuracy drms|accuracy 2drms|accuracy cep|accuracy cep50|accuracy r95"},
+    Known{"accuracy",
+          "accuracy|hacc|h acc|h accuracy|eph|pos acc|position accuracy|pos accuracy|horizontal accuracy|acc "
+          "h|gps accuracy|hpe|epe|accuracy horizontal|genauigkeit|précision|precision|precisión|"
+          "drms|d rms|2drms|2 drms|2d rms|cep|cep50|cep 50|r95|cep95|cep 95"},
     Known{"accuracy_east", "epx|accuracy east|acc east|acc e"},
     Known{"accuracy_north", "epy|accuracy north|acc north|acc n"},
     Known{
@@ -204,11 +203,18 @@ std::string beginning_of(std::span<const std::string> words, std::size_t& used) 
   return {};
 }
 
+/// Returns the unit of a rate of which a word names the thousandth, "deg/s" for "mdps"; else empty.
+std::string_view thousandth_in(const std::string& word) {
+  if (word.size() < 3 || word.front() != 'm') return {};
+  const std::string_view unit = formats::known_unit(word.substr(1));
+  return !unit.empty() && dimension(unit) == "rate" ? unit : std::string_view();
+}
+
 /// A yaw in deg/s is a yaw rate, whatever its name.
 void read_dimension(std::span<const std::string> words, ColumnProposal& proposal) {
   const bool is_rate = std::any_of(words.begin(), words.end(), [](const std::string& word) {
     const std::string_view unit = formats::known_unit(word);
-    return !unit.empty() && dimension(unit) == "rate";
+    return (!unit.empty() && dimension(unit) == "rate") || !thousandth_in(word).empty();
   });
   if (is_rate && proposal.quantity == "heading") proposal.quantity = "yaw_rate";
 }
@@ -257,13 +263,7 @@ void read_scale(std::span<const std::string> words, ColumnProposal& proposal) {
   }
 }
 
-/// Returns the unit of a rate of which a word names the thousandth, "deg/s" for "mdps"; else empty.
-std::string_view thousandth_in(const std::string& word) {
-  if (word.size() < 3 || word.front() != 'm') return {};
-  const std::string_view unit = formats::known_unit(word.substr(1));
-  return !unit.empty() && dimension(unit) == "rate" ? unit : std::string_view();
-}
-
+/// A rate in thousandths: "gyro_z_mdps".
 void read_thousandths(std::span<const std::string> words, ColumnProposal& proposal) {
   if (proposal.unit_known || dimension_of(proposal.quantity) != "rate") return;
   for (const std::string& word : words) {
@@ -275,20 +275,27 @@ void read_thousandths(std::span<const std::string> words, ColumnProposal& propos
   }
 }
 
-/// The name of a radius tells what share of the errors it holds.
+/// Words that say what share of the errors a radius holds.
+bool tells_meaning(const std::string& word) {
+  static constexpr std::array<std::string_view, 14> kWords{
+      "drms", "2drms", "d", "2d", "2", "rms", "cep", "cep50", "cep95", "r95", "95", "95%", "50", "50%"};
+  return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
+}
+
 void read_meaning(std::span<const std::string> words, ColumnProposal& proposal) {
   if (proposal.quantity != "accuracy") return;
   const auto has = [&](std::string_view word) {
     return std::find(words.begin(), words.end(), word) != words.end();
   };
-  if (has("2drms") || (has("2") && has("drms"))) {
+  const bool drms = has("drms") || (has("d") && has("rms"));
+  if (has("2drms") || (has("2") && drms) || (has("2d") && has("rms"))) {
     proposal.meaning = AccuracyMeaning::drms;
     proposal.scale = 0.5;
-  } else if (has("r95") || has("cep95") || (has("cep") && has("95"))) {
+  } else if (has("r95") || has("cep95") || has("95") || has("95%")) {
     proposal.meaning = AccuracyMeaning::drms;
     proposal.scale = 0.578;  // sqrt(2) / 2.448: the radius of 95 % of normal errors of 1 per axis
     proposal.remark = "a radius that holds 95 % of the errors is 1 / 0.578 of their drms";
-  } else if (has("drms")) {
+  } else if (drms) {
     proposal.meaning = AccuracyMeaning::drms;
   } else if (has("cep") || has("cep50")) {
     proposal.meaning = AccuracyMeaning::cep50;
@@ -363,10 +370,12 @@ ColumnProposal proposal_of(std::span<const std::string> words) {
   const std::span<const std::string> rest = words.subspan(used);
   // "speed valid" is no speed. The words after the name must be a unit, a sense or a word that
   // changes nothing.
-  const auto understood = [](const std::string& word) {
+  const auto understood = [&](const std::string& word) {
     static constexpr std::array<std::string_view, 12> kHarmless{
         "cw", "ccw", "from", "east", "north", "flag", "raw", "value", "filtered", "clock", "gps", "gnss"};
-    return !formats::known_unit(word).empty() || !thousandth_in(word).empty() ||
+    if (!thousandth_in(word).empty())
+      return proposal.quantity == "heading" || dimension_of(proposal.quantity) == "rate";
+    return !formats::known_unit(word).empty() || (proposal.quantity == "accuracy" && tells_meaning(word)) ||
            std::find(kHarmless.begin(), kHarmless.end(), word) != kHarmless.end();
   };
   if (!rest.empty() && !understood(rest.front())) return {};

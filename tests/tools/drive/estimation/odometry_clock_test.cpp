@@ -137,6 +137,7 @@ TEST_CASE("antenna: none is told at the bound of the search, beyond which the pl
 TEST_CASE("antenna: one that is stated on the wrong side is told, with where it is") {
   PreparedDrive drive = bends(0, 0, nullptr, {1.5, 0.4});
   drive.receivers.front().antenna_is_stated = true;
+  drive.receivers.front().antenna_m = {-1.5, -0.4};
   for (Fix& fix : drive.fixes) fix.antenna_m = {-1.5, -0.4};
   std::optional<Eigen::Vector2d> told_m;
   for (const std::string& warning : fuse(drive, {}, registry()).model.warnings()) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <waymark/tools/drive/mending/creeping.hpp>
+#include <waymark/tools/drive/nodes/timeline.hpp>
 
 #include "winding_scene.hpp"
 
@@ -89,12 +90,20 @@ TEST_CASE("creeping: a sensor without a dead zone is believed") {
 
 namespace {
 
-/// A minute at 6 m/s, a stop from 60 to 80 s, and a minute more: it brakes at 2 m/s^2 and starts at 1.
-double speed_with_stop(double t) {
+/// Every 140 s a minute at 6 m/s, a stop from 60 to 80 s, and a minute more: it brakes at 2 m/s^2 and starts at 1.
+double speed_with_stops(double time) {
+  const double t = std::fmod(time, 140);
   if (t < 57) return 6;
   if (t < 60) return 2 * (60 - t);
   if (t < 80) return 0;
   return std::min(6.0, t - 80);
+}
+
+constexpr int kStops = 3;
+
+WindingScene with_stops(double sign = 1) {
+  return winding_scene(
+      140 * kStops, [&](double t) { return sign * speed_with_stops(t); }, [](double) { return 0.01; });
 }
 
 double way_of(std::span<const OdometrySample> odometry) {
@@ -105,37 +114,63 @@ double way_of(std::span<const OdometrySample> odometry) {
   return way_m;
 }
 
+void check_kept(std::vector<OdometrySample> odometry) {
+  const std::vector<OdometrySample> before = odometry;
+  CHECK(pass_dead_zone(odometry).edges == 0);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    CHECK(odometry[i].speed_mps == before[i].speed_mps);
+    CHECK(odometry[i].distance_variance_per_s == 0);
+  }
+}
+
 }  // namespace
 
 TEST_CASE("creeping: speeds pass a dead zone as they came to its edge") {
   const double sign = GENERATE(1.0, -1.0);
-  WindingScene made = winding_scene(
-      140, [&](double t) { return sign * speed_with_stop(t); }, [](double) { return 0.01; });
+  WindingScene made = with_stops(sign);
   const double driven_m = way_of(made.odometry);
   for (OdometrySample& sample : made.odometry)
     if (std::abs(sample.speed_mps) < kZone) sample.speed_mps = 0;
   // Braking it loses 0.7^2 / 4 m, starting 0.7^2 / 2.
-  CHECK(std::abs(driven_m - way_of(made.odometry)) == Approx(0.37).margin(0.1));
-  pass_dead_zone(made.odometry);
-  CHECK(way_of(made.odometry) == Approx(driven_m).margin(0.03));
+  const double unseen_m = std::abs(driven_m - way_of(made.odometry));
+  CHECK(unseen_m == Approx(0.37 * kStops).margin(0.1 * kStops));
+  const PassedZone passed = pass_dead_zone(made.odometry);
+  CHECK(passed.edges == 2 * kStops);
+  CHECK(passed.way_m == Approx(unseen_m).epsilon(0.3));
+  CHECK_THAT(note_of(passed), Catch::Contains("at 6 stops and starts"));
+  CHECK(way_of(made.odometry) == Approx(driven_m).margin(0.03 * kStops));
   for (const OdometrySample& sample : made.odometry) {
-    const double t = sample.stamp.seconds();
-    CHECK(sample.speed_mps == Approx(sign * speed_with_stop(t)).margin(0.02));
-    CHECK(sample.assumed == (std::abs(sample.speed_mps) > 0 && std::abs(sample.speed_mps) < kZone - 0.01));
+    const double speed = speed_with_stops(sample.stamp.seconds());
+    CHECK(sample.speed_mps == Approx(sign * speed).margin(0.02));
+    CHECK((sample.distance_variance_per_s > 0) == (speed > 1e-6 && speed < kZone - 0.01));
+    CHECK_FALSE(sample.assumed);  // the yaw rate is measured
   }
 }
 
-TEST_CASE("creeping: speeds that reach 0 by themselves, and ones that leap to it, stay") {
-  WindingScene smooth = winding_scene(140, speed_with_stop, [](double) { return 0.01; });
-  WindingScene leap = winding_scene(
-      140, [](double t) { return t > 60 && t < 80 ? 0 : 6 + std::sin(t); }, [](double) { return 0.01; });
-  for (WindingScene* made : {&smooth, &leap}) {
-    const std::vector<OdometrySample> before = made->odometry;
-    pass_dead_zone(made->odometry);
-    for (std::size_t i = 0; i < before.size(); ++i) {
-      CHECK(made->odometry[i].speed_mps == before[i].speed_mps);
-      CHECK_FALSE(made->odometry[i].assumed);
+TEST_CASE("creeping: what is not known of a ramp is in the distances beside it") {
+  OdometrySample left{.stamp = {0}, .speed_mps = 0.5};
+  OdometrySample right{.stamp = Stamp::from_seconds(0.1), .speed_mps = 0.3};
+  left.distance_variance_per_s = 0.02;
+  right.distance_variance_per_s = 0.04;
+  CHECK(motion_between(left, right, 1, 1, nullptr, nullptr).distance_sigma_m ==
+        Approx(std::sqrt(0.03 * 0.1)));
+}
+
+TEST_CASE("creeping: speeds that reach 0 by themselves, leap to it, or are rounded have no dead zone") {
+  check_kept(with_stops().odometry);
+  check_kept(
+      winding_scene(
+          140, [](double t) { return t > 60 && t < 80 ? 0 : 6 + std::sin(t); }, [](double) { return 0.01; })
+          .odometry);
+  // OBD: whole km/h, once or ten times a second.
+  for (const std::size_t every : {10U, 1U}) {
+    const WindingScene made = with_stops();
+    std::vector<OdometrySample> obd;
+    for (std::size_t i = 0; i < made.odometry.size(); i += every) {
+      obd.push_back(made.odometry[i]);
+      obd.back().speed_mps = std::floor(3.6 * obd.back().speed_mps) / 3.6;
     }
+    check_kept(obd);
   }
 }
 

@@ -170,10 +170,11 @@ Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& r
       }
       lines.finish();
     });
-    add_each(graph, found->result.distrusted,
-             "{} contradicts the other edges and is left out, although it is trusted",
-             "{} edges contradict the others and are left out, although they are trusted: {} and others",
-             found->notes);
+    add_each(
+        graph, found->result.distrusted,
+        "{} contradicts the other edges and is left out, although it is trusted",
+        "{} edges contradict the others and are left out, although they are trusted: {} and others (--outliers lists them)",
+        found->notes);
     if (const auto& edges = found->result.contradicted; !edges.empty())
       found->notes.push_back(fmt::format(
           "{} trusted edges contradict the other edges, and the result with them: {}{}; --trusted none doubts them",
