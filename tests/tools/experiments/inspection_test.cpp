@@ -403,7 +403,7 @@ TEST_CASE("inspection: the name of a radius says nothing of the accuracies of ax
   }
   const std::vector<LogInspection> logs{inspect(write("axes.csv", text))};
   CHECK(logs[0].fixes->east.median == Approx(2).epsilon(0.04));  // 95 % of an axis
-  CHECK_FALSE(has(drive_yaml(propose_drive(logs), logs, waymark_test::scratch_dir()), "cep50"));
+  CHECK_FALSE(has(drive_yaml(propose_drive(logs), logs, waymark_test::scratch_dir()), "meaning: cep50"));
 }
 
 TEST_CASE("inspection: CAN frames without a DBC are ids with rates and lengths") {

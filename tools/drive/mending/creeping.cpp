@@ -147,9 +147,9 @@ double go_on(const ZoneEdge& edge, std::span<OdometrySample> odometry) {
   const auto sample = [&](std::ptrdiff_t i) -> OdometrySample& {
     return odometry[static_cast<std::size_t>(i)];
   };
-  // The way of an even ramp, known to a half.
+  // The way of an even ramp. The rate is a guess, so that it may be as long again.
   const double way_m = 0.5 * edge.speed_mps * edge.speed_mps / edge.rate;
-  const double variance_per_s = 0.25 * way_m * way_m / (edge.speed_mps / edge.rate);
+  const double variance_per_s = way_m * way_m / (edge.speed_mps / edge.rate);
   const std::ptrdiff_t first = edge.at + edge.step;
   for (std::ptrdiff_t i = first; i >= 0 && i < size; i += edge.step) {
     const double since_s = std::abs(seconds_between(sample(first).stamp, sample(i).stamp));

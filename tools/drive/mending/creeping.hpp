@@ -38,8 +38,8 @@ struct PassedZone {
 };
 
 /// Speeds that slow down to the edge of a dead zone go on to 0 as they came, and those that leave it come from 0: for
-/// some tenths of a second, in which the vehicle moves by decimetres. Their way is known to a half
-/// (OdometrySample::distance_variance_per_s). The zone is 2 m/s at most and twice as large as the steps of the
+/// some tenths of a second, in which the vehicle moves by decimetres. Their way is as uncertain as it is
+/// long (OdometrySample::distance_variance_per_s). The zone is 2 m/s at most and twice as large as the steps of the
 /// readings; at five edges, and at half of all, the speed changes by 0.3 to 4 m/s^2 and by less than half the zone
 /// between two readings, so that the first one of 0 cannot be true.
 /// @param odometry sorted by stamp
