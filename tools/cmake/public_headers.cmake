@@ -111,6 +111,7 @@ set(WAYMARK_PUBLIC_HEADERS
   tools/drive/model/fuse.hpp
   tools/drive/model/minimize.hpp
   tools/drive/model/motion_runs.hpp
+  tools/drive/estimation/antenna_place.hpp
   tools/drive/estimation/clock_drift.hpp
   tools/drive/estimation/noise.hpp
   tools/drive/estimation/speed_slip.hpp
