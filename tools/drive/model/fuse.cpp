@@ -361,8 +361,8 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
 }
 
 std::optional<AntennaPlace> Fusion::antenna_of(const ModeledDrive& modeled, const FusionSettings& settings) {
-  constexpr double kStatedWithin_m =
-      0.5;  // rear wheels that slip sideways in bends move the point of the odometry
+  // Rear wheels that slip sideways in bends move the point of the odometry.
+  constexpr double kStatedWithin_m = 0.5;
   constexpr double kStatedShare = 1.0 / 3;
   if (drive_.report.tells_late_quantity || modeled.noise.parameters.empty()) return std::nullopt;
   const bool is_poor = modeled.noise.is_poor_odometry(modeled.placed.odometry_name);
