@@ -106,7 +106,7 @@ Slopes slopes_at(const Minimum& minimum, const PlaceAndDelay& steps, TrialDrive&
 }
 
 /// Tells whether no place within the bounds seems to make the fixes more probable by some half chi2: a parabola
-/// through the costs about here, which take a sixth of a search, is not deep enough.
+/// through ten costs about here, where a search takes sixty, is not deep enough.
 bool is_flat(const Slopes& slopes, const PlaceAndDelay& bounds, double gain) {
   const Eigen::Matrix3d within = 0.5 * bounds.cwiseAbs2().cwiseInverse().asDiagonal();
   const Eigen::LLT<Eigen::Matrix3d> factor(slopes.curvature + within);
