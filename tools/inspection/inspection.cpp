@@ -117,10 +117,9 @@ LogRequest basic_request(const LogInspection& log, StreamKind stream) {
 /// Tells whether a log of columns holds the stream, and adds its columns to the request.
 bool map_columns(const LogInspection& log, LogRequest& request) {
   const auto columns = proposed_columns(log, request.stream);
-  for (const auto& [quantity, column] : columns) {
+  for (const auto& [quantity, column] : columns)
     request.columns[quantity] = {reference_of(*column), column->proposal.unit, column->proposal.convention,
                                  column->proposal.scale, column->proposal.missing};
-  }
   request.accuracy = named_meaning(columns);
   if (request.stream == StreamKind::gnss)
     return (columns.contains("latitude") && columns.contains("longitude")) ||

@@ -18,8 +18,8 @@ namespace waymark::drive {
 
 struct AntennaPlace {
   Eigen::Vector2d place_m = Eigen::Vector2d::Zero();  ///< ahead and to the left
-  Eigen::Vector2d taken_m =
-      Eigen::Vector2d::Zero();  ///< where it is taken to be: at the origin, unless it is stated
+  /// where it is taken to be: at the origin, unless it is stated
+  Eigen::Vector2d taken_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d sigma_m = Eigen::Vector2d::Zero();
 };
 

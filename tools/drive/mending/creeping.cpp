@@ -111,7 +111,9 @@ std::optional<ZoneEdge> zone_edge(std::ptrdiff_t at, std::ptrdiff_t step, double
   constexpr double kSeen = 0.5;    // of the zone: what may pass between two readings
   constexpr double kInside = 0.3;  // of the zone
   const auto size = static_cast<std::ptrdiff_t>(odometry.size());
-  const auto sample = [&](std::ptrdiff_t i) { return odometry[static_cast<std::size_t>(i)]; };
+  const auto sample = [&](std::ptrdiff_t i) -> const OdometrySample& {
+    return odometry[static_cast<std::size_t>(i)];
+  };
   const auto away_s = [&](std::ptrdiff_t i) {
     return std::abs(seconds_between(sample(at).stamp, sample(i).stamp));
   };

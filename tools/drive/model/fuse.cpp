@@ -365,21 +365,18 @@ std::optional<AntennaPlace> Fusion::antenna_of(const ModeledDrive& modeled, cons
   constexpr double kStatedWithin_m = 0.5;
   constexpr double kStatedShare = 1.0 / 3;
   if (drive_.report.tells_late_quantity || modeled.noise.parameters.empty()) return std::nullopt;
+  const bool is_stated = antenna_is_stated(drive_);
   const bool is_poor = modeled.noise.is_poor_odometry(modeled.placed.odometry_name);
-  if (!antenna_is_stated(drive_))
-    return is_poor
-               ? std::nullopt
-               : find_antenna_place(modeled.placed, drive_.sensors, modeled.settings, registry_, between_);
   // One that is stated at the point of the odometry is meant to be taken so.
-  const Eigen::Vector2d stated_m = drive_.receivers.front().antenna_m;
-  if (stated_m == Eigen::Vector2d::Zero()) return std::nullopt;
+  if (is_stated ? drive_.receivers.front().antenna_m == Eigen::Vector2d::Zero() : is_poor)
+    return std::nullopt;
   // One that is stated on the wrong side makes a sound odometry look poor.
-  const FusionSettings before = decision_on(settings);
-  const auto found =
-      is_poor ? find_antenna_place(placed(before), drive_.sensors, before, registry_, between_)
-              : find_antenna_place(modeled.placed, drive_.sensors, modeled.settings, registry_, between_);
-  const double least_m = std::max(kStatedWithin_m, kStatedShare * stated_m.norm());
-  return found && (found->place_m - stated_m).norm() > least_m ? found : std::nullopt;
+  const FusionSettings with = is_poor ? decision_on(settings) : modeled.settings;
+  const PlacedDrive& at = is_poor ? placed(with) : modeled.placed;
+  const auto found = find_antenna_place(at, drive_.sensors, with, registry_, between_);
+  if (!found || !is_stated) return found;
+  const double least_m = std::max(kStatedWithin_m, kStatedShare * found->taken_m.norm());
+  return (found->place_m - found->taken_m).norm() > least_m ? found : std::nullopt;
 }
 
 ModeledDrive Fusion::completed(ModeledDrive modeled, const FusionSettings& settings,
