@@ -3,6 +3,7 @@
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/covariance/marginals.hpp>
+#include <waymark/core/linear/inverse_form.hpp>
 #include <waymark/core/system/normal_equations.hpp>
 #include <waymark/core/system/weakest_unknown.hpp>
 
@@ -49,29 +50,22 @@ CovarianceBlocks Marginals::blocks(std::span<const VertexIndex> vertices) const 
   return result;
 }
 
-Eigen::MatrixXd Marginals::joint(std::span<const VertexIndex> vertices) {
-  const BlockPattern& pattern = structure_.pattern();
-  std::vector<std::int64_t> unknown;  // per row of the result, -1: none
+Eigen::MatrixXd Marginals::joint(std::span<const VertexIndex> vertices) const {
+  Eigen::Index size = 0;
+  for (const VertexIndex v : vertices) size += graph_.vertex_type(v).tangent_size;
+  std::vector<BlockRow> unit;
+  Eigen::Index begin = 0;
   for (const VertexIndex v : vertices) {
-    const int column = structure_.column_of(v);
-    for (int i = 0; i < graph_.vertex_type(v).tangent_size; ++i) {
-      unknown.push_back(column < 0 ? -1 : pattern.start[at(column)] + i);
+    const Eigen::Index own = graph_.vertex_type(v).tangent_size;
+    if (const int column = structure_.column_of(v); column >= 0) {
+      unit.push_back({column, Eigen::MatrixXd::Zero(own, size)});
+      unit.back().values.middleCols(begin, own).setIdentity();
     }
+    begin += own;
   }
-  const auto n = static_cast<Eigen::Index>(unknown.size());
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
-  std::vector<double> x;
-  for (Eigen::Index c = 0; c < n; ++c) {
-    if (unknown[at(c)] < 0) continue;
-    x.assign(at(pattern.dimension()), 0.0);
-    x[at(unknown[at(c)])] = 1;
-    cholesky_.solve(x, x);
-    for (Eigen::Index r = 0; r < n; ++r) {
-      if (unknown[at(r)] >= 0) covariance(r, c) = x[at(unknown[at(r)])];
-    }
-  }
-  // The result is symmetric except for rounding. + 0 removes the sign of a zero.
-  return (0.5 * (covariance + covariance.transpose())).array() + 0.0;
+  if (unit.empty()) return Eigen::MatrixXd::Zero(size, size);
+  const Eigen::MatrixXd covariance = InverseForm(cholesky_)(unit);
+  return 0.5 * (covariance + covariance.transpose());  // symmetric except for rounding
 }
 
 CovarianceBlocks marginal_covariances(const Graph& graph, std::span<const VertexIndex> vertices) {

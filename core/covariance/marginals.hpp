@@ -1,9 +1,9 @@
 /// Marginal covariances at a minimum: blocks of H^-1 from a fresh undamped factor.
 ///
 /// Marginals refers to the graph, which must outlive it; its values and edges must not change
-/// meanwhile. The returned blocks belong to the caller. Threads: blocks() and joint() must not run
-/// at the same time on one object. Preconditions: vertices are indices of this graph. The values
-/// are a minimum, because covariances mean nothing elsewhere.
+/// meanwhile. The returned blocks belong to the caller. Threads: several may ask one object at the
+/// same time. Preconditions: vertices are indices of this graph. The values are a minimum, because
+/// covariances mean nothing elsewhere.
 #pragma once
 
 #include <span>
@@ -64,8 +64,9 @@ class Marginals {
   [[nodiscard]] CovarianceBlocks blocks(std::span<const VertexIndex> vertices) const;
 
   /// Returns the joint covariance of these vertices, adjacent or not. Their tangents are in the
-  /// given order. Each column costs one solve with the factor.
-  [[nodiscard]] Eigen::MatrixXd joint(std::span<const VertexIndex> vertices);
+  /// given order. Each column costs a substitution along the ways from the vertices to the root of the
+  /// elimination tree.
+  [[nodiscard]] Eigen::MatrixXd joint(std::span<const VertexIndex> vertices) const;
 
   /// Returns what was held, and the messages about it.
   [[nodiscard]] const Gauge& gauge() const { return gauge_; }

@@ -15,7 +15,8 @@ InverseForm::InverseForm(const BlockCholesky& factor)
       factor_(factor.factor_.data()),
       number_(symbolic_.column.size()),
       node_(symbolic_.column.size()),
-      marked_(symbolic_.nodes.size(), 0) {
+      marked_(symbolic_.nodes.size(), 0),
+      passed_(symbolic_.nodes.size(), 0) {
   for (std::size_t k = 0; k < number_.size(); ++k) number_[at(symbolic_.column[k])] = static_cast<int>(k);
   for (std::size_t s = 0; s < symbolic_.nodes.size(); ++s) {
     for (int k = symbolic_.nodes[s].first; k < symbolic_.nodes[s].last; ++k)
@@ -26,15 +27,20 @@ InverseForm::InverseForm(const BlockCholesky& factor)
 Eigen::MatrixXd InverseForm::operator()(std::span<const BlockRow> rows) {
   const Eigen::Index columns = rows.empty() ? 0 : rows.front().values.cols();
   form_.setZero(columns, columns);
-  vectors_.resize(std::max(vectors_.size(), at(symbolic_.vector_size * columns)));
   find_way(rows);
+  std::int64_t passed = 0;
+  for (const int s : way_) {
+    passed_[at(s)] = passed;
+    passed += symbolic_.nodes[at(s)].below;
+  }
+  vectors_.resize(std::max(vectors_.size(), at(passed * columns)));
   for (const int s : way_) {
     const Supernode& node = symbolic_.nodes[at(s)];
     front_.setZero(node.columns + node.below, columns);
     add_rows(node, rows);
     add_children(node);
     node.links > 0 ? substitute_chain(node) : substitute_front(node);
-    Eigen::Map<Eigen::MatrixXd>(vectors_.data() + node.vector * columns, node.below, columns) =
+    Eigen::Map<Eigen::MatrixXd>(vectors_.data() + passed_[at(s)] * columns, node.below, columns) =
         front_.bottomRows(node.below);
   }
   for (const int s : way_) marked_[at(s)] = 0;
@@ -66,7 +72,7 @@ void InverseForm::add_children(const Supernode& node) {
   for (int c = node.first_child; c >= 0; c = symbolic_.nodes[at(c)].next_sibling) {
     if (marked_[at(c)] == 0) continue;
     const Supernode& child = symbolic_.nodes[at(c)];
-    const Eigen::Map<const Eigen::MatrixXd> from(vectors_.data() + child.vector * columns, child.below,
+    const Eigen::Map<const Eigen::MatrixXd> from(vectors_.data() + passed_[at(c)] * columns, child.below,
                                                  columns);
     Eigen::Index row = 0;
     for (int i = 0; i < child.row_count; ++i) {

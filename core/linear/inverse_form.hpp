@@ -1,6 +1,7 @@
 /// B^T A^-1 B for matrices B with few block rows, from a factor of A.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -43,8 +44,9 @@ class InverseForm {
   std::vector<int> number_;  // of each block column of the pattern, in elimination order
   std::vector<int> node_;    // of each number
   std::vector<char> marked_;
-  std::vector<int> way_;  // supernodes, ascending
-  std::vector<double> vectors_;
+  std::vector<int> way_;              // supernodes, ascending
+  std::vector<std::int64_t> passed_;  // of each supernode on the way: where the rows that it passes on begin
+  std::vector<double> vectors_;       // only of the way, so that a small form of a large matrix needs little
   Eigen::MatrixXd front_;
   Eigen::MatrixXd form_;
 };

@@ -25,7 +25,7 @@ std::vector<std::size_t> some_withheld(const std::vector<Fix>& fixes) {
 
 /// Returns the covariance of what a fix shows. @param heading_rad of the pose
 Eigen::Matrix2d innovation_covariance(const Fix& fix, VertexIndex pose, double heading_rad,
-                                      const ExpectedError& error, Marginals& marginals) {
+                                      const ExpectedError& error, const Marginals& marginals) {
   std::vector<VertexIndex> vertices{pose};
   Eigen::MatrixXd jacobian(2, 3 + 2 * static_cast<Eigen::Index>(error.terms.size()));
   const Eigen::Vector2d lever = rotate(heading_rad, fix.antenna_m);
