@@ -1,5 +1,5 @@
 // error: error returns a vector of another length than kErrorDimension says
-#include "base.hpp"
+#include "refused/base.hpp"
 
 struct EdgeWrong {
   static constexpr std::string_view kTag = "EDGE_WRONG";

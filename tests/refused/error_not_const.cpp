@@ -1,5 +1,5 @@
 // error: error is a const template <typename T> that takes the values of the vertices
-#include "base.hpp"
+#include "refused/base.hpp"
 
 struct EdgeWrong {
   static constexpr std::string_view kTag = "EDGE_WRONG";

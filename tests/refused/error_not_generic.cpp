@@ -1,5 +1,5 @@
 // error: error is generic in its scalar: template <typename T>
-#include "base.hpp"
+#include "refused/base.hpp"
 
 struct EdgeWrong {
   static constexpr std::string_view kTag = "EDGE_WRONG";

@@ -1,5 +1,5 @@
 // error: error returns a vector of length kErrorDimension, also for one number
-#include "base.hpp"
+#include "refused/base.hpp"
 
 struct EdgeWrong {
   static constexpr std::string_view kTag = "EDGE_WRONG";

@@ -1,5 +1,5 @@
 // error: a field is a double or a fixed-size Eigen vector: write double for an int
-#include "base.hpp"
+#include "refused/base.hpp"
 
 struct EdgeWrong {
   static constexpr std::string_view kTag = "EDGE_WRONG";

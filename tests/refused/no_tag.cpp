@@ -1,5 +1,5 @@
 // error: an edge type has kTag, kErrorDimension, Vertices and fields()
-#include "base.hpp"
+#include "refused/base.hpp"
 
 struct EdgeWrong {
   static constexpr int kErrorDimension = 1;
