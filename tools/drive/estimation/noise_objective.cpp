@@ -26,6 +26,8 @@ constexpr double kContraction = 0.5;
 /// enough where H is the whole curvature.
 constexpr double kCorrected = 0.02;
 constexpr int kMostCorrections = 12;
+/// Less is rounding: the parameter has no effect.
+constexpr double kNoDecrement = 1e-16;
 constexpr double kImpossible = 1e300;
 
 double value_at(double coordinate, const NoisePrior& prior) {
@@ -76,6 +78,7 @@ NoiseObjective::NoiseObjective(const CoarseDrive& coarse, const FusionSettings& 
 
 void NoiseObjective::build(const NoiseEstimate& noise) {
   if (between_) between_();
+  found_at_.reset();
   graph_ = build_graph(coarse_.drive, coarse_.sensors, with_noise(settings_, noise), registry_).graph;
   if (equations_) return;
   kept_.build(graph_, find_gauge(graph_).held);
@@ -127,6 +130,11 @@ double NoiseObjective::at(const NoiseEstimate& noise) {
   build(noise);
   find_poses(kExact);
   here_ = evidence_->at(values_);
+  found_at_ = coordinates_of(noise);
+  return cost_of(noise);
+}
+
+double NoiseObjective::cost_of(const NoiseEstimate& noise) const {
   const double cost = here_.negative_log() + negative_log_prior(noise);
   return std::isfinite(cost) ? cost : kImpossible;
 }
@@ -139,8 +147,9 @@ bool NoiseObjective::factorize_curvature() {
 }
 
 double NoiseObjective::with_gradient(const NoiseEstimate& noise, Eigen::VectorXd& gradient) {
-  const double cost = at(noise);
   gradient = coordinates_of(noise);  // of the prior
+  // A search asks for the gradient where it has just asked for the cost.
+  const double cost = found_at_ == gradient ? cost_of(noise) : at(noise);
   if (cost >= kImpossible || !factorize_curvature()) return cost;
   const Eigen::VectorXd residual = equations_->gradient();
   for (std::size_t i = 0; i < noise.parameters.size(); ++i)
@@ -185,7 +194,7 @@ std::vector<double> NoiseObjective::moved_poses(const Eigen::VectorXd& residual)
     equations_->retract(values, move, next);
     values.swap(next);
     if (i == 0) first = decrement;
-    if (!(decrement > kCorrected * kCorrected * first)) break;
+    if (!(decrement > std::max(kNoDecrement, kCorrected * kCorrected * first))) break;
     (void)equations_->linearize(values);
   }
   return values;

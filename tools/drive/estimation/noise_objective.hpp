@@ -10,6 +10,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -55,7 +56,7 @@ class NoiseObjective {
   [[nodiscard]] std::vector<PoseBelief> beliefs_at(const NoiseEstimate& noise);
   /// Stays at the poses of the last call. Before the first call it is at the initial guess.
   void stay() { stays_at_ = values_; }
-  /// Returns how many times L was computed, with or without its derivatives.
+  /// Returns how many times the poses of a noise were found.
   [[nodiscard]] int evaluations() const { return evaluations_; }
 
  private:
@@ -68,6 +69,7 @@ class NoiseObjective {
   [[nodiscard]] bool factorize_curvature();
   /// Minimises chi2 over the poses, and keeps them.
   void find_poses(double tolerance);
+  [[nodiscard]] double cost_of(const NoiseEstimate& noise) const;
   /// Returns where the minimum moves if the gradient becomes that of equations_, with the factor of the
   /// minimum. @param residual the gradient that is left there
   [[nodiscard]] std::vector<double> moved_poses(const Eigen::VectorXd& residual);
@@ -87,6 +89,8 @@ class NoiseObjective {
   std::vector<double> stays_at_;  ///< empty: the initial guess
   std::vector<double> values_;    ///< of the last minimum
   Evidence here_;                 ///< there
+  /// coordinates of the noise of the graph, if the last minimum is its own
+  std::optional<Eigen::VectorXd> found_at_;
   int evaluations_ = 0;
 };
 
