@@ -111,8 +111,6 @@ set(WAYMARK_PUBLIC_HEADERS
   tools/drive/model/fuse.hpp
   tools/drive/model/minimize.hpp
   tools/drive/model/motion_runs.hpp
-  tools/drive/estimation/antenna_place.hpp
-  tools/drive/estimation/clock_drift.hpp
   tools/drive/estimation/noise.hpp
   tools/drive/estimation/speed_slip.hpp
   tools/drive/model/place.hpp
@@ -120,7 +118,9 @@ set(WAYMARK_PUBLIC_HEADERS
   tools/drive/nodes/gate.hpp
   tools/drive/nodes/start.hpp
   tools/drive/nodes/timeline.hpp
-  tools/drive/nodes/yaw_rate_at_rest.hpp)
+  tools/drive/nodes/yaw_rate_at_rest.hpp
+  tools/drive/trials/antenna_place.hpp
+  tools/drive/trials/clock_drift.hpp)
 
 # Included by public headers, mostly by their templates. No promise: a program does not include them itself.
 set(WAYMARK_INCLUDED_HEADERS

@@ -145,7 +145,7 @@ std::string remedies(const ClockOffset& offset, bool may_be_speed_alone, double 
 struct Found {
   std::vector<std::string> warnings;
   bool tells_late_quantity = false;  ///< as PrepareReport has them
-  double moved_quantity_sigma_s = 0;
+  std::optional<MovedQuantity> moved_quantity{};
 };
 
 /// Moves the stamps of the only odometry to another clock, or tells it.
@@ -196,7 +196,7 @@ std::vector<OdometrySample> without_late_quantity(const LateQuantity& late, cons
       treatment == ClocksApart::move && !states_delays(config_of(drive.odometry_name, description));
   if (moves) {
     const LateQuantity moved = move_late_quantity(late, logs, description, drive);
-    found.moved_quantity_sigma_s = std::hypot(moved.sigma_s, kEven_s);
+    found.moved_quantity = {moved.kind, moved.late_s, std::hypot(moved.sigma_s, kEven_s)};
     found.warnings.push_back(
         late_quantity_warning("the odometry", moved,
                               fmt::format("its readings are moved by that; state '{}: {:.2f}' for 'odometry'",
@@ -222,7 +222,7 @@ PreparedDrive with_clock_told(PreparedDrive drive, const DriveLogs& logs, DriveD
         offset_shown(without_late_quantity(*late, logs, description, treatment, drive, found), drive.fixes);
   if (offset) treat_clock(*offset, logs, description, treatment, drive, found);
   drive.report.tells_late_quantity = found.tells_late_quantity;
-  drive.report.moved_quantity_sigma_s = found.moved_quantity_sigma_s;
+  drive.report.moved_quantity = found.moved_quantity;
   for (std::string& warning : found.warnings) drive.report.warnings.push_back(std::move(warning));
   return drive;
 }

@@ -12,7 +12,7 @@ namespace waymark::drive {
 
 /// One of the two quantities of an odometry that is later than the other one.
 struct LateQuantity {
-  enum class Kind { speed, yaw_rate };
+  using Kind = OdometryQuantity;
   Kind kind = Kind::speed;
   /// positive, later than the other one. A gyro is on time and fixes are seldom late, within 0.15 s: where the drive
   /// knows less of them than that, this counts

@@ -150,6 +150,8 @@ void TimeOffsetSearch::admit_slip(const FusionSettings& settings, Minimum minimu
     const Minimum less = minimum_with(slip - 1);
     const Minimum more = minimum_with(slip + 1);
     const double gradient = slip + 0.5 * (more.cost - less.cost);
+    if (count == 1 && gradient > 0)
+      return;  // wheels do not slip to the other side; an odometry that is late does
     const double curvature = 1 + std::max(0.0, less.cost - 2 * minimum.cost + more.cost);
     (gradient < 0 ? low : high) = slip;
     double step = std::clamp(-gradient / curvature, -kLongest, kLongest);

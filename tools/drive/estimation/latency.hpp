@@ -58,7 +58,8 @@ class TimeOffsetSearch {
   Minimum reach(const FusionSettings& settings, PlacedDrive& placed);
   /// Fuses a drive until its offsets no longer move, and leaves them and its poses there.
   [[nodiscard]] Minimum converge(const FusionSettings& settings, CoarseDrive& coarse) const;
-  /// Makes what is known of the offsets what is known if the speeds may slip.
+  /// Makes what is known of the offsets what is known if the speeds may slip. They stay where the cost rises with a
+  /// slip.
   void admit_slip(const FusionSettings& settings, Minimum minimum,
                   std::vector<std::optional<TimeOffset>>& offsets) const;
 

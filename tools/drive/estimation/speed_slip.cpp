@@ -8,7 +8,9 @@
 
 namespace waymark::drive {
 
-void remove_slip(double per_mps2, PlacedDrive& drive) {
+void change_by_slope(double Interval::*quantity,
+                     const std::function<double(const Interval& read, double slope)>& changed,
+                     PlacedDrive& drive) {
   std::vector<Interval>& intervals = drive.timeline.intervals;
   const std::vector<Interval> read = intervals;
   for (std::size_t i = 1; i + 1 < read.size(); ++i) {
@@ -16,9 +18,17 @@ void remove_slip(double per_mps2, PlacedDrive& drive) {
     const Interval& after = read[i + 1];
     if (before.bridged || read[i].bridged || after.bridged) continue;
     const double apart_s = read[i].dt_s + 0.5 * (before.dt_s + after.dt_s);
-    const double acceleration_mps2 = (after.speed_mps - before.speed_mps) / apart_s;
-    intervals[i].speed_mps = read[i].speed_mps * (1 - per_mps2 * acceleration_mps2);
+    intervals[i].*quantity = changed(read[i], (after.*quantity - before.*quantity) / apart_s);
   }
+}
+
+void remove_slip(double per_mps2, PlacedDrive& drive) {
+  change_by_slope(
+      &Interval::speed_mps,
+      [&](const Interval& read, double acceleration_mps2) {
+        return read.speed_mps * (1 - per_mps2 * acceleration_mps2);
+      },
+      drive);
 }
 
 PreparedDrive without_slip(PreparedDrive drive, const SpeedSlip& slip) {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
+#include <functional>
 #include <string>
 
 #include <waymark/tools/drive/logs/prepare.hpp>
@@ -19,9 +19,14 @@ struct SpeedSlip {
   [[nodiscard]] bool is_probable() const {
     constexpr double kSigmas = 3;
     constexpr double kLeast = 0.001;
-    return std::abs(per_mps2) > std::max(kLeast, kSigmas * sigma);
+    return per_mps2 > std::max(kLeast, kSigmas * sigma);  // below 0, speeds are late
   }
 };
+
+/// Gives a quantity of the intervals values that depend on how fast it changes there, 1/s. Beside a gap they stay.
+void change_by_slope(double Interval::*quantity,
+                     const std::function<double(const Interval& read, double slope)>& changed,
+                     PlacedDrive& drive);
 
 /// Makes the speeds of the intervals what they were without a slip. Beside a gap they stay.
 void remove_slip(double per_mps2, PlacedDrive& drive);

@@ -111,7 +111,7 @@ void find_signs(const std::string& source, std::vector<OdometrySample>& samples,
   drive_backwards(backwards, samples);
 }
 
-/// Speeds without a sign that are noise become 0. @param source its name and ": ", or empty
+/// Speeds that are noise become 0. @param source its name and ": ", or empty
 void find_stops(const std::string& source, std::vector<OdometrySample>& samples, PreparedDrive& drive) {
   double total_s = 0;
   for (const Standing& time : find_standing(samples, drive.fixes)) {
@@ -120,7 +120,7 @@ void find_stops(const std::string& source, std::vector<OdometrySample>& samples,
   }
   if (total_s > 0)
     drive.report.notes.push_back(fmt::format(
-        "{}the speed has no sign and reads noise for {:.0f} s in all: the vehicle is taken to stand there",
+        "{}the speed reads noise that adds up to a way for {:.0f} s in all: the vehicle is taken to stand there",
         source, total_s));
 }
 

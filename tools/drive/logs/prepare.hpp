@@ -56,6 +56,15 @@ struct ClockReport {
   double spread_s = 0;  ///< median absolute deviation from it
 };
 
+enum class OdometryQuantity { speed, yaw_rate };
+
+/// Readings that were late alone, and were moved to earlier stamps.
+struct MovedQuantity {
+  OdometryQuantity kind = OdometryQuantity::speed;
+  double earlier_s = 0;
+  double sigma_s = 0;  ///< of that; delays of the fixes are not known better
+};
+
 struct PrepareReport {
   StreamReport odometry;
   StreamReport gnss;
@@ -78,9 +87,8 @@ struct PrepareReport {
   std::set<std::string> left_out;  ///< names of odometries that the fixes contradict
   /// a warning says that one of speed and yaw rate is late, and nothing was moved: no offset of all stamps is right
   bool tells_late_quantity = false;
-  /// how well it is known by how much the readings of one of them were moved; 0: none were. Delays of the fixes are
-  /// not known better
-  double moved_quantity_sigma_s = 0;
+  /// the one of them whose readings were moved instead
+  std::optional<MovedQuantity> moved_quantity{};
   std::vector<std::string> corrupt_examples;
 };
 

@@ -17,6 +17,7 @@ constexpr std::size_t kFewZeros = 10;  // at most one in 10
 
 /// Sums over the samples before each one.
 struct Sums {
+  std::vector<double> way{0};  // speeds with their sign
   std::vector<double> speed{0};
   std::vector<double> change{0};
   std::vector<std::size_t> fast{0};
@@ -27,9 +28,10 @@ Sums sums_of(std::span<const OdometrySample> odometry) {
   Sums sums;
   for (std::size_t i = 0; i < odometry.size(); ++i) {
     const double speed = odometry[i].speed_mps;
-    sums.speed.push_back(sums.speed.back() + speed);
+    sums.way.push_back(sums.way.back() + speed);
+    sums.speed.push_back(sums.speed.back() + std::abs(speed));
     sums.change.push_back(sums.change.back() + (i == 0 ? 0 : std::abs(speed - odometry[i - 1].speed_mps)));
-    sums.fast.push_back(sums.fast.back() + (speed < kSlow_mps ? 0 : 1));
+    sums.fast.push_back(sums.fast.back() + (std::abs(speed) < kSlow_mps ? 0 : 1));
     sums.zero.push_back(sums.zero.back() + (speed == 0 ? 1 : 0));
   }
   return sums;
@@ -69,9 +71,6 @@ bool fixes_stay(std::span<const Fix> fixes, Stamp from, Stamp to, double way_m) 
 }  // namespace
 
 std::vector<Standing> find_standing(std::span<const OdometrySample> odometry, std::span<const Fix> fixes) {
-  const bool has_sign = std::any_of(odometry.begin(), odometry.end(),
-                                    [](const OdometrySample& sample) { return sample.speed_mps < 0; });
-  if (has_sign) return {};
   const Sums sums = sums_of(odometry);
   std::vector<Standing> found;
   std::size_t last = 0;
@@ -91,9 +90,8 @@ std::vector<Standing> find_standing(std::span<const OdometrySample> odometry, st
   std::erase_if(found, [&](const Standing& time) {
     const Stamp from = odometry[time.first].stamp;
     const Stamp to = odometry[time.last].stamp;
-    const double mean =
-        (sums.speed[time.last + 1] - sums.speed[time.first]) / static_cast<double>(time.size());
-    return !fixes_stay(used, from, to, mean * time.duration_s(odometry));
+    const double mean = (sums.way[time.last + 1] - sums.way[time.first]) / static_cast<double>(time.size());
+    return !fixes_stay(used, from, to, std::abs(mean) * time.duration_s(odometry));
   });
   return found;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,7 @@
 #include <waymark/tools/drive/estimation/scale_priors.hpp>
 #include <waymark/tools/drive/model/build.hpp>
 #include <waymark/tools/drive/model/provenance.hpp>
+#include <waymark/tools/drive/trials/lag_left.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -178,32 +180,37 @@ void adapt(const PreparedDrive& drive, bool by_default, FusionSettings& decision
     adapt_to_yaw_rate_of(source.name, source.yaw_rate_at_rest, by_default, decision, registry);
 }
 
-/// Returns by how much the only odometry is late, if all receivers seem to know positions before they had them. What
-/// is stated of delays is believed.
-double late_odometry(const std::vector<std::optional<TimeOffset>>& offsets, const PreparedDrive& drive,
-                     const FusionSettings& stated, const std::vector<AbsoluteGroup>& groups) {
-  constexpr double kDeviations = 4;
-  constexpr double kLeast_s = 0.02;
-  if (!drive.relative.empty() || !drive.sensors.empty() || groups.empty()) return 0;
-  if (drive.report.tells_late_quantity) return 0;
+/// Tells whether the drive has but one odometry and its receivers, so that their clocks are all that can differ.
+bool has_two_clocks(const PreparedDrive& drive) {
+  return drive.relative.empty() && drive.sensors.empty();
+}
+
+/// Returns by how much the odometry is late, if all receivers that tell know positions before it had them. What is
+/// stated of their delays is believed.
+double late_odometry(const PreparedDrive& drive, const FusionSettings& stated, const ModeledDrive& modeled) {
+  if (!has_two_clocks(drive) || drive.report.tells_late_quantity) return 0;
+  std::set<int> used;
+  for (const Fix& fix : modeled.placed.fixes)
+    if (fix.status == FixStatus::accepted) used.insert(fix.source);
   double late_s = std::numeric_limits<double>::infinity();
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const bool is_open = is_delay_open(groups[g], stated) && offsets[g] &&
-                         std::none_of(groups[g].sources.begin(), groups[g].sources.end(), [&](int source) {
-                           const auto at = static_cast<std::size_t>(source);
-                           return at < drive.receivers.size() && drive.receivers[at].delay_is_stated;
-                         });
-    if (!is_open || -offsets[g]->value_s < std::max(kLeast_s, kDeviations * offsets[g]->sigma_s)) return 0;
-    late_s = std::min(late_s, -offsets[g]->value_s);
+  for (const AbsoluteGroup& group : groups_of(modeled.placed, modeled.decision)) {
+    for (const int source : group.sources) {
+      const auto at = static_cast<std::size_t>(source);
+      const double early_s = -modeled.placed.time_offsets_s[at];
+      if (!used.contains(source) || early_s == 0) continue;  // it tells nothing
+      const bool is_stated = at < drive.receivers.size() && drive.receivers[at].delay_is_stated;
+      if (is_stated || !is_delay_open(group, stated)) return 0;
+      late_s = std::min(late_s, early_s);
+    }
   }
-  return late_s;
+  return std::isfinite(late_s) ? std::max(0.0, late_s) : 0;
 }
 
 std::string words_for_late_odometry(double late_s) {
   return fmt::format(
       "the fixes seem to know positions {:.3f} s before the vehicle had them. Receivers have the clock of GNSS and "
-      "are never early, so the odometry is probably late: add {:.3f} to the 'time: {{offset}}' of its logs, or the "
-      "results are late by that as well; if the stamps of the receiver are wrong, state its 'delay'",
+      "are never early, so the odometry is probably late: its readings are moved by that; add {:.3f} to the 'time: "
+      "{{offset}}' of its logs; if the stamps of the receiver are wrong, state its 'delay'",
       late_s, -late_s);
 }
 
@@ -256,16 +263,16 @@ ModeledDrive Fusion::estimated_from(PlacedDrive placed, const FusionSettings& se
   TimeOffsetSearch delays(modeled.placed, drive_.sensors, registry_, between_);
   auto offsets = estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
   for (std::optional<TimeOffset>& offset : offsets)
-    if (offset) offset->sigma_s = std::hypot(offset->sigma_s, drive_.report.moved_quantity_sigma_s);
+    if (offset && drive_.report.moved_quantity)
+      offset->sigma_s = std::hypot(offset->sigma_s, drive_.report.moved_quantity->sigma_s);
   const bool left_out = modeled.noise.is_poor_odometry(modeled.placed.odometry_name)
                             ? leave_out_unseen(settings, decision, modeled)
                             : leave_out_improbable(offsets, settings, decision, modeled);
   if (left_out) (void)estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
   for (const std::optional<TimeOffset>& offset : offsets)
     if (offset && offset->slip.is_probable()) modeled.slip = offset->slip;
-  modeled.odometry_late_s =
-      left_out ? 0 : late_odometry(offsets, drive_, settings, groups_of(modeled.placed, decision));
   modeled.decision = std::move(decision);
+  modeled.odometry_late_s = late_odometry(drive_, settings, modeled);
   return modeled;
 }
 
@@ -301,31 +308,37 @@ ModeledDrive Fusion::searched(const FusionSettings& settings) {
   return modeled;
 }
 
-ModeledDrive Fusion::on_clock_of_fixes(ModeledDrive modeled, const FusionSettings& settings) {
+bool Fusion::take_if_better(PreparedDrive other, double gain, const FusionSettings& settings,
+                            Freed& freed) const {
+  ModeledDrive modeled = Fusion(other, registry_, between_).searched(settings);
+  if (!(freed.modeled.noise.cost - modeled.noise.cost > gain)) return false;
+  freed.modeled = std::move(modeled);
+  freed.drive = std::move(other);
+  return true;
+}
+
+void Fusion::free_of_drift(const FusionSettings& settings, Freed& freed) const {
   constexpr double kGain = 2;  // little, because clocks do drift
   constexpr int kMostRounds = 3;
-  const bool has_one_clock = drive_.relative.empty() && drive_.sensors.empty();
-  if (!has_one_clock || modeled.noise.parameters.empty() || modeled.decision.calibration->empty())
-    return modeled;
-  if (modeled.noise.is_poor_odometry(modeled.placed.odometry_name)) return modeled;
+  const NoiseEstimate& noise = freed.modeled.noise;
+  if (!has_two_clocks(drive_) || noise.parameters.empty() || freed.modeled.decision.calibration->empty())
+    return;
+  if (noise.is_poor_odometry(freed.modeled.placed.odometry_name)) return;
+  const PreparedDrive drifting = freed.drive_or(drive_);
   ClockDrift drift;
   for (int round = 0; round < kMostRounds; ++round) {
     const std::optional<ClockDrift> left =
-        find_clock_drift(modeled.placed, drive_.sensors, modeled.settings, registry_, between_);
+        find_clock_drift(freed.modeled.placed, drive_.sensors, freed.modeled.settings, registry_, between_);
     if (left && round > 0) drift.sigma = left->sigma;  // with the noise that is left
     if (!left || !left->is_probable) break;
     const ClockDrift together{drift.rate + left->rate, left->sigma};
-    const PreparedDrive moved = without_drift(drive_, together);
-    ModeledDrive other = Fusion(moved, registry_, between_).searched(settings);
-    if (!(modeled.noise.cost - other.noise.cost > kGain)) break;
-    modeled = std::move(other);
+    if (!take_if_better(without_drift(drifting, together), kGain, settings, freed)) break;
     drift = together;
   }
-  modeled.clock_drift = drift;
+  freed.modeled.clock_drift = drift;
   if (drift.rate != 0)
-    modeled.placed.warnings.push_back(
+    freed.told.push_back(
         warning_of(drift, seconds_between(drive_.fixes.front().stamp, drive_.fixes.back().stamp)));
-  return modeled;
 }
 
 void Fusion::add_deviations(ModeledDrive& modeled) const {
@@ -339,25 +352,72 @@ ModeledDrive Fusion::estimated(const FusionSettings& settings) {
   return modeled;
 }
 
-ModeledDrive Fusion::model(const FusionSettings& settings) {
+void Fusion::settle_moved_quantity(const FusionSettings& settings, Freed& freed) const {
+  constexpr int kMostRounds = 3;
+  if (!drive_.report.moved_quantity) return;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const PreparedDrive& drive = freed.drive_or(drive_);
+    const std::optional<LagLeft> left =
+        find_lag_left(*drive.report.moved_quantity, freed.modeled.placed, drive.sensors,
+                      freed.modeled.settings, registry_, between_);
+    if (!left || !left->is_probable()) break;
+    PreparedDrive moved = without_lag_left(drive, *left);
+    freed.modeled = Fusion(moved, registry_, between_).searched(settings);
+    freed.drive = std::move(moved);
+  }
+  if (freed.drive) freed.told.push_back(warning_of(*freed.drive->report.moved_quantity));
+}
+
+void Fusion::free_of_slip(const FusionSettings& settings, Freed& freed) const {
   constexpr double kGain = 1;     // the slip is three of its own deviations
   constexpr int kMostRounds = 8;  // what the noise hid is found in steps
-  refuse_misreading(placed(decision_on(settings)));
-  ModeledDrive modeled = searched(settings);
-  const bool may_be_freed = drive_.relative.empty() && !modeled.noise.parameters.empty();
-  std::optional<PreparedDrive> freed;
+  const PreparedDrive slipping = freed.drive_or(drive_);
   SpeedSlip slip;
-  for (int round = 0; round < kMostRounds && may_be_freed && modeled.slip.is_probable(); ++round) {
-    const SpeedSlip together{slip.per_mps2 + modeled.slip.per_mps2, modeled.slip.sigma};
-    PreparedDrive moved = without_slip(drive_, together);
-    ModeledDrive other = Fusion(moved, registry_, between_).searched(settings);
-    if (!(modeled.noise.cost - other.noise.cost > kGain)) break;
-    modeled = std::move(other);
-    freed = std::move(moved);
+  for (int round = 0; round < kMostRounds && freed.modeled.slip.is_probable(); ++round) {
+    const SpeedSlip together{slip.per_mps2 + freed.modeled.slip.per_mps2, freed.modeled.slip.sigma};
+    if (!take_if_better(without_slip(slipping, together), kGain, settings, freed)) break;
     slip = together;
   }
-  if (!freed) return completed(std::move(modeled), settings, {});
-  return Fusion(*freed, registry_, between_).completed(std::move(modeled), settings, warning_of(slip));
+  if (slip.per_mps2 != 0) freed.told.push_back(warning_of(slip));
+}
+
+void Fusion::put_on_time(const FusionSettings& settings, Freed& freed) const {
+  constexpr double kTold_s = 0.02;
+  constexpr int kMostRounds = 3;
+  const ClockDrift drift = freed.modeled.clock_drift;
+  double moved_s = 0;
+  for (int round = 0; round < kMostRounds && freed.modeled.odometry_late_s > 0; ++round) {
+    const double late_s = freed.modeled.odometry_late_s;
+    PreparedDrive moved = with_stamps_later(freed.drive_or(drive_), [&](Stamp) { return -late_s; });
+    freed.modeled = Fusion(moved, registry_, between_).searched(settings);
+    freed.drive = std::move(moved);
+    moved_s += late_s;
+  }
+  freed.modeled.clock_drift = drift;
+  if (moved_s >= kTold_s)
+    freed.told.push_back(words_for_late_odometry(moved_s));
+  else if (moved_s > 0)
+    freed.modeled.notes.push_back(fmt::format(
+        "the odometry is taken to be {:.3f} s late, because the fixes know positions so much earlier",
+        moved_s));
+}
+
+ModeledDrive Fusion::model(const FusionSettings& settings) {
+  refuse_misreading(placed(decision_on(settings)));
+  Freed freed{searched(settings)};
+  if (drive_.relative.empty() && !freed.modeled.noise.parameters.empty()) {
+    settle_moved_quantity(settings, freed);
+    free_of_slip(settings, freed);
+  }
+  // An antenna that is elsewhere looks like a clock that is wrong.
+  if (const auto antenna =
+          Fusion(freed.drive_or(drive_), registry_, between_).antenna_of(freed.modeled, settings)) {
+    freed.told.push_back(warning_of(*antenna, receiver_name(freed.modeled.placed, 0)));
+  } else {
+    free_of_drift(settings, freed);
+    put_on_time(settings, freed);
+  }
+  return completed(std::move(freed));
 }
 
 std::optional<AntennaPlace> Fusion::antenna_of(const ModeledDrive& modeled, const FusionSettings& settings) {
@@ -379,34 +439,28 @@ std::optional<AntennaPlace> Fusion::antenna_of(const ModeledDrive& modeled, cons
   return (found->place_m - found->taken_m).norm() > least_m ? found : std::nullopt;
 }
 
-ModeledDrive Fusion::completed(ModeledDrive modeled, const FusionSettings& settings,
-                               const std::string& told) {
-  // An antenna that is elsewhere looks like a clock that is wrong.
-  if (const std::optional<AntennaPlace> antenna = antenna_of(modeled, settings)) {
-    modeled.placed.warnings.push_back(warning_of(*antenna, receiver_name(modeled.placed, 0)));
-    modeled.odometry_late_s = 0;
-  } else {
-    modeled = on_clock_of_fixes(std::move(modeled), settings);
-  }
-  if (!told.empty()) modeled.placed.warnings.push_back(told);
-  if (modeled.odometry_late_s > 0)
-    modeled.placed.warnings.push_back(words_for_late_odometry(modeled.odometry_late_s));
+ModeledDrive Fusion::completed(Freed freed) const {
+  ModeledDrive modeled = std::move(freed.modeled);
+  std::vector<std::string>& warnings = modeled.placed.warnings;
+  warnings.insert(warnings.end(), freed.told.begin(), freed.told.end());
+  if (freed.drive) modeled.other_readings = std::make_shared<PreparedDrive>(std::move(*freed.drive));
+  const PreparedDrive& drive = modeled.other_readings ? *modeled.other_readings : drive_;
   add_deviations(modeled);
-  BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
+  BuiltGraph built = build_graph(modeled.placed, drive.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);
   modeled.modelings = std::move(built.modelings);
   modeled.groups = std::move(built.groups);
   modeled.distance_m = distance_of(modeled.placed.timeline);
   formats::GraphDocument& document = modeled.document;
   document.graph = std::move(built.graph);
-  document.frame = drive_.frame;
-  document.time_scale = drive_.scale;
-  document.sources = document_sources(drive_, modeled.placed, built.shares, modeled.settings);
+  document.frame = drive.frame;
+  document.time_scale = drive.scale;
+  document.sources = document_sources(drive, modeled.placed, built.shares, modeled.settings);
   if (document.sources.empty() && !modeled.placed.fixes.empty())
     document.antenna_m = modeled.placed.fixes.front().antenna_m;
-  document.truth_reference_m = drive_.truth_reference_m;
+  document.truth_reference_m = drive.truth_reference_m;
   document.fixes = modeled.placed.fixes;
-  document.provenance = provenance_of(drive_, modeled, registry_);
+  document.provenance = provenance_of(drive, modeled, registry_);
   return modeled;
 }
 

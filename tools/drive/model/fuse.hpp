@@ -25,6 +25,7 @@
 #include <functional>
 #include <list>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -34,13 +35,13 @@
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
-#include <waymark/tools/drive/estimation/antenna_place.hpp>
-#include <waymark/tools/drive/estimation/clock_drift.hpp>
 #include <waymark/tools/drive/estimation/noise.hpp>
 #include <waymark/tools/drive/estimation/speed_slip.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/model/minimize.hpp>
 #include <waymark/tools/drive/model/place.hpp>
+#include <waymark/tools/drive/trials/antenna_place.hpp>
+#include <waymark/tools/drive/trials/clock_drift.hpp>
 
 namespace waymark::drive {
 
@@ -50,10 +51,14 @@ struct ModeledDrive {
   FusionSettings decision;  ///< the same without the estimated noise
   PlacedDrive placed;       ///< nodes, gate, initial guess
   NoiseEstimate noise;      ///< without parameters if the noise is as stated
-  /// by which the fixes seem to come before they were measured: the stamps of the odometry are late. 0: they are not
+  /// by which the fixes seem to come before they were measured, so that the stamps of the odometry are late; what is left
+  /// of it where they were moved. 0: they are not late
   double odometry_late_s = 0;
   ClockDrift clock_drift{};  ///< of which the odometry was freed
   SpeedSlip slip{};          ///< that its speeds seem to have
+  /// the drive with the readings that were fused, if they are others than those that were read: moved in time, freed
+  /// of a slip. What fuses the same drive again with these settings takes it
+  std::shared_ptr<const PreparedDrive> other_readings{};
   std::vector<std::string> sensor_warnings;
   /// groups of receivers whose fixes are taken as not late; an only receiver is ""
   std::vector<std::string> without_delay;
@@ -94,8 +99,8 @@ class Fusion {
   /// Does the steps before the graph: placing, delays and noise. The document is empty. A clock that drifts is kept.
   /// @throws errors of the steps
   [[nodiscard]] ModeledDrive estimated(const FusionSettings& settings);
-  /// Does the steps up to the graph. An odometry whose stamps seem to be late is told; one whose clock drifts or whose
-  /// speeds slip is freed of that (clock_drift.hpp, speed_slip.hpp), and told.
+  /// Does the steps up to the graph. An odometry that is late, whose clock drifts, whose
+  /// speeds slip or that was not moved rightly is freed of that (clock_drift.hpp, speed_slip.hpp, lag_left.hpp), and told.
   /// @throws InputError if the odometry or the positions were read in a wrong unit or sense (misreading.hpp);
   /// errors of the steps
   [[nodiscard]] ModeledDrive model(const FusionSettings& settings);
@@ -117,17 +122,35 @@ class Fusion {
   [[nodiscard]] const PlacedDrive& placed(const FusionSettings& settings);
   /// As estimated(), without the deviations of the noise.
   [[nodiscard]] ModeledDrive searched(const FusionSettings& settings);
-  /// Does the steps from there to the graph. @param told a further warning
-  [[nodiscard]] ModeledDrive completed(ModeledDrive modeled, const FusionSettings& settings,
-                                       const std::string& told);
+  /// A drive that may be fused with other readings than those that were read.
+  struct Freed {
+    ModeledDrive modeled;
+    std::optional<PreparedDrive> drive{};  ///< with those readings
+    std::vector<std::string> told{};       ///< warnings about what they were freed of
+
+    [[nodiscard]] const PreparedDrive& drive_or(const PreparedDrive& as_read) const {
+      return drive ? *drive : as_read;
+    }
+  };
+  /// Fuses a drive with other readings. @param gain by which they must be more probable, as a difference of
+  /// NoiseEstimate::cost @returns whether they are, and were taken
+  bool take_if_better(PreparedDrive other, double gain, const FusionSettings& settings, Freed& freed) const;
+  /// Moves the quantity that was late alone by what is left of that. Its search decides, because costs of drives that
+  /// stand at other readings cannot be compared.
+  void settle_moved_quantity(const FusionSettings& settings, Freed& freed) const;
+  void free_of_slip(const FusionSettings& settings, Freed& freed) const;
+  /// Puts the odometry on the clock of the fixes, if its own one drifts and that is more probable. A drift that the
+  /// noise hid is found in steps.
+  void free_of_drift(const FusionSettings& settings, Freed& freed) const;
+  /// Moves an odometry that is late to the time of the fixes.
+  void put_on_time(const FusionSettings& settings, Freed& freed) const;
+  /// Does the steps from there to the graph.
+  [[nodiscard]] ModeledDrive completed(Freed freed) const;
   void add_deviations(ModeledDrive& modeled) const;
   /// Returns where the antenna is, if the drive shows it elsewhere than it is taken to be. What comes late looks like an
   /// antenna further behind.
   [[nodiscard]] std::optional<AntennaPlace> antenna_of(const ModeledDrive& modeled,
                                                        const FusionSettings& settings);
-  /// Returns the drive with the odometry on the clock of the fixes, if its own one drifts and that is more probable. A
-  /// drift that the noise hid is found in steps.
-  [[nodiscard]] ModeledDrive on_clock_of_fixes(ModeledDrive modeled, const FusionSettings& settings);
   [[nodiscard]] ModeledDrive estimated_from(PlacedDrive placed, const FusionSettings& settings);
   /// Returns the drive with a start along the fixes, if that is more probable: the odometry is then worth little.
   [[nodiscard]] std::optional<ModeledDrive> along_fixes(const PlacedDrive& usual,

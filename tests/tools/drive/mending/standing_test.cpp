@@ -1,4 +1,4 @@
-// A vehicle that stands while its speed reads noise without a sign.
+// A vehicle that stands while its speed reads noise that adds up to a way.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -59,6 +59,17 @@ TEST_CASE("standing: noise without a sign between two ways is a stop") {
   }
 }
 
+TEST_CASE("standing: a few readings below 0 give noise no sign") {
+  Noisy noisy;
+  int reading = 0;
+  const auto odometry = speeds(10, [&](double t) {
+    if (t < 20 || t > 40) return noisy(5);
+    return ++reading % 20 == 0 ? -0.03 : noisy(0);
+  });
+  const auto fixes = fixes_at([](double t) { return 5 * (t < 20 ? t : std::max(20.0, t - 20)); });
+  CHECK(find_standing(odometry, fixes).size() == 1);
+}
+
 TEST_CASE("standing: a vehicle that creeps does not stand") {
   const auto at_rest = fixes_at([](double) { return 0; });
   Noisy noisy;
@@ -85,6 +96,7 @@ TEST_CASE("standing: noise with a sign adds up to nothing, and slow readings tel
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal(0, 0.1);
   CHECK(find_standing(speeds(25, [&](double) { return normal(random); }), at_rest).empty());
+  CHECK(find_standing(speeds(25, [](double) { return -0.3; }), at_rest).empty());  // slips, but is no noise
   Noisy noisy;
   CHECK(find_standing(speeds(2, [&](double) { return noisy(0); }), at_rest).empty());
 }

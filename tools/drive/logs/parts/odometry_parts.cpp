@@ -39,17 +39,17 @@ std::string_view channels_of(std::string_view source) {
   return source == "ticks" ? "wheel_ticks" : source;
 }
 
-struct Reading {
+struct ChannelReading {
   Stamp stamp;
   double value = 0;
 };
 
 /// Returns readings in order of time. Of several with one stamp, the first is kept.
-TimeSeries channel_of(std::vector<Reading> readings) {
+TimeSeries channel_of(std::vector<ChannelReading> readings) {
   std::stable_sort(readings.begin(), readings.end(),
-                   [](const Reading& a, const Reading& b) { return a.stamp < b.stamp; });
+                   [](const ChannelReading& a, const ChannelReading& b) { return a.stamp < b.stamp; });
   TimeSeries series;
-  for (const Reading& reading : readings) {
+  for (const ChannelReading& reading : readings) {
     if (!series.empty() && series.stamps.back() == reading.stamp) continue;
     series.stamps.push_back(reading.stamp);
     series.values.push_back(reading.value);
@@ -64,7 +64,7 @@ Channels collect_channels(std::span<const OdometryPart> parts, Names& by_default
   const std::vector<SensorColumn>& known = formats::odometry_channels();
   for (const OdometryPart& part : parts) {
     for (std::size_t c = 0; c < known.size(); ++c) {
-      std::vector<Reading> readings;
+      std::vector<ChannelReading> readings;
       for (std::size_t row = 0; row < part.readings.size(); ++row) {
         const double value = part.readings.at(row, c);
         if (std::isfinite(value)) readings.push_back({part.readings.stamps[row], value});

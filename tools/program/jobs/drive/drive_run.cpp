@@ -115,9 +115,8 @@ evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, drive::ModeledDri
       evaluation.prediction = lasting->statistics;
   }
   if (!summary.converged()) return evaluation;
-  std::optional<drive::PreparedDrive> moved;  // what is fused again for a comparison has the same clock
-  if (modeled.clock_drift.rate != 0) moved = drive::without_drift(run.loaded.drive, modeled.clock_drift);
-  const drive::PreparedDrive& drive = moved ? *moved : run.loaded.drive;
+  // What is fused again for a comparison has the same readings.
+  const drive::PreparedDrive& drive = modeled.other_readings ? *modeled.other_readings : run.loaded.drive;
   evaluation.sources = compare_sources(drive, modeled, evaluation, run.registry, run.console);
   evaluation.held_out = hold_out(drive, modeled, run.registry, run.console);
   return evaluation;

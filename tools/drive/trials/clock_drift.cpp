@@ -1,4 +1,4 @@
-#include <waymark/tools/drive/estimation/clock_drift.hpp>
+#include <waymark/tools/drive/trials/clock_drift.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <waymark/tools/drive/estimation/trial_drive.hpp>
+#include <waymark/tools/drive/trials/trial_drive.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -76,10 +76,23 @@ std::optional<ClockDrift> find_clock_drift(const PlacedDrive& placed, std::span<
 PreparedDrive without_drift(PreparedDrive drive, const ClockDrift& drift) {
   if (drive.fixes.empty()) return drive;
   const Stamp agreed = drive.fixes.front().stamp;
-  OdometrySample last = drive.odometry.back();
-  for (OdometrySample& sample : drive.odometry)
-    sample.stamp = sample.stamp.later(drift.rate * seconds_between(agreed, sample.stamp));
-  if (drive.odometry.back().stamp < last.stamp) drive.odometry.push_back(std::move(last));
+  return with_stamps_later(std::move(drive),
+                           [&](Stamp stamp) { return drift.rate * seconds_between(agreed, stamp); });
+}
+
+PreparedDrive with_stamps_later(PreparedDrive drive, const std::function<double(Stamp)>& by_s) {
+  std::vector<OdometrySample>& odometry = drive.odometry;
+  if (odometry.size() < 2) return drive;
+  const Stamp end = odometry.back().stamp;
+  const double usual_s =
+      seconds_between(odometry.front().stamp, end) / static_cast<double>(odometry.size() - 1);
+  for (OdometrySample& sample : odometry) sample.stamp = sample.stamp.later(by_s(sample.stamp));
+  // Longer than a gap may be, one interval would be one.
+  while (odometry.back().stamp < end) {
+    OdometrySample held = odometry.back();
+    held.stamp = std::min(end, held.stamp.later(usual_s));
+    odometry.push_back(std::move(held));
+  }
   return drive;
 }
 

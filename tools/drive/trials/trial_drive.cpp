@@ -1,4 +1,4 @@
-#include <waymark/tools/drive/estimation/trial_drive.hpp>
+#include <waymark/tools/drive/trials/trial_drive.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -35,8 +35,12 @@ struct ClockDrift {
                                                          const std::function<void()>& between = {});
 
 /// Returns the drive with the odometry's readings at the times of the other clock. Both agree at the first fix: a
-/// constant difference cannot be told from fixes that are late. The last reading holds until the former end.
+/// constant difference cannot be told from fixes that are late.
 [[nodiscard]] PreparedDrive without_drift(PreparedDrive drive, const ClockDrift& drift);
+
+/// Returns the drive with other stamps of the odometry. The last reading holds until the former end.
+/// @param by_s how much later each stamp becomes, in their order
+[[nodiscard]] PreparedDrive with_stamps_later(PreparedDrive drive, const std::function<double(Stamp)>& by_s);
 
 /// Returns the warning about a clock that drifts. @param duration_s from the first fix to the last one
 [[nodiscard]] std::string warning_of(const ClockDrift& drift, double duration_s);

@@ -1,4 +1,4 @@
-#include <waymark/tools/drive/estimation/antenna_place.hpp>
+#include <waymark/tools/drive/trials/antenna_place.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include <Eigen/LU>
 
 #include <waymark/core/base/detail/median.hpp>
-#include <waymark/tools/drive/estimation/trial_drive.hpp>
+#include <waymark/tools/drive/trials/trial_drive.hpp>
 
 namespace waymark::drive {
 namespace {

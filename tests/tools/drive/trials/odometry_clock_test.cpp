@@ -1,4 +1,4 @@
-// The clock of the odometry beside that of GNSS: stamps that are late are told, a clock that drifts is mended.
+// The clock of the odometry beside that of GNSS: what is late, or drifts, is put on time and told.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,8 +7,10 @@
 
 #include <catch2/catch.hpp>
 
-#include <waymark/tools/drive/estimation/antenna_place.hpp>
+#include <waymark/tools/drive/clocks/late_quantity.hpp>
 #include <waymark/tools/drive/model/fuse.hpp>
+#include <waymark/tools/drive/trials/antenna_place.hpp>
+#include <waymark/tools/drive/trials/lag_left.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 #include "support/registry.hpp"
@@ -80,6 +82,46 @@ TEST_CASE("late odometry: it is told by how much, with what to state") {
   CHECK_THAT(told(bends(0.4)), Catch::Contains("add -0.40") || Catch::Contains("add -0.39"));
 }
 
+TEST_CASE("late odometry: poses at the fixes are where the vehicle was then, not a tenth of a second later") {
+  for (const double late_s : {0.1, 0.4}) {
+    std::vector<Eigen::Vector2d> truth;
+    const PreparedDrive drive = bends(late_s, 0, &truth);  // at 12 m/s: 1.2 and 4.8 m
+    CHECK(rms_at_fixes(fuse(drive, {}, registry()), truth) < 0.03);
+  }
+}
+
+TEST_CASE("late odometry: what fuses the drive again has the readings that were moved") {
+  const PreparedDrive drive = bends(0.1);
+  const ModeledDrive modeled = fuse(drive, {}, registry()).model;
+  REQUIRE(modeled.other_readings);
+  CHECK(seconds_between(modeled.other_readings->odometry[100].stamp, drive.odometry[100].stamp) ==
+        Approx(0.1).margin(0.005));
+  CHECK(modeled.odometry_late_s == 0);
+  CHECK_FALSE(fuse(bends(0), {}, registry()).model.other_readings);
+}
+
+TEST_CASE(
+    "late odometry: it is put on time with stated noise as well, and beside a receiver that tells nothing") {
+  FusionSettings settings;
+  settings.estimates_noise = false;
+  PreparedDrive drive = bends(0.1);
+  CHECK(fuse(drive, settings, registry()).model.other_readings);
+  drive.receivers.push_back({"reference"});
+  for (std::size_t i = 0; i < drive.fixes.size(); i += 2) {
+    drive.fixes[i].source = 1;
+    drive.fixes[i].status = FixStatus::withheld;
+  }
+  CHECK(fuse(drive, {}, registry()).model.other_readings);
+}
+
+TEST_CASE("late odometry: stamps that are moved earlier leave no gap at the end") {
+  const PreparedDrive drive = bends(0);
+  const PreparedDrive moved = with_stamps_later(drive, [](Stamp) { return -0.75; });
+  CHECK(moved.odometry.back().stamp == drive.odometry.back().stamp);
+  for (std::size_t i = 1; i < moved.odometry.size(); ++i)
+    CHECK(seconds_between(moved.odometry[i - 1].stamp, moved.odometry[i].stamp) < 0.11);
+}
+
 TEST_CASE(
     "late odometry: nothing is said where clocks agree, where fixes may be late, or a delay is stated") {
   CHECK(told(bends(0)).empty());
@@ -93,8 +135,65 @@ TEST_CASE("late fixes: a delay is known no better than how far a late quantity w
   PreparedDrive drive = bends(-0.02);
   const auto delay_s = [&] { return fuse(drive, {}, registry()).model.placed.time_offsets_s.front(); };
   CHECK(delay_s() == Approx(0.02).margin(0.01));
-  drive.report.moved_quantity_sigma_s = 0.03;
+  drive.report.moved_quantity = {OdometryQuantity::speed, 0.4, 0.03};
   CHECK(delay_s() == 0);
+}
+
+TEST_CASE(
+    "late speed: one that was moved too far, or not far enough, is moved to a few thousandths of a second") {
+  for (const double left_s : {0.04, -0.05}) {
+    PreparedDrive drive = bends(0);
+    const LateQuantity read_late{OdometryQuantity::speed, -left_s, 0};
+    drive.odometry = without_lateness(drive.odometry, read_late);
+    drive.report.moved_quantity = {OdometryQuantity::speed, 0.4, 0.05};
+    const ModeledDrive modeled = fuse(drive, {}, registry()).model;
+    const auto left =
+        find_lag_left(*drive.report.moved_quantity, modeled.placed, {}, modeled.settings, registry());
+    REQUIRE(left);
+    CHECK_FALSE(left->is_probable());  // it was taken out
+    double told_s = 0;
+    for (const std::string& warning : modeled.warnings()) {
+      CHECK_THAT(warning, !Catch::Contains("antenna") && !Catch::Contains("clock"));
+      const auto advice = warning.find("state 'speed_delay: ");
+      if (advice != std::string::npos)
+        REQUIRE(std::sscanf(warning.c_str() + advice, "state 'speed_delay: %lf'", &told_s) == 1);
+    }
+    CHECK(told_s == Approx(0.4 + left_s).margin(0.006));
+  }
+}
+
+TEST_CASE("late speed: what is left is found with its sigma, and nothing where the speed was moved rightly") {
+  const MovedQuantity moved{OdometryQuantity::speed, 0.4, 0.05};
+  for (const double left_s : {0.0, 0.03, -0.11}) {
+    PreparedDrive drive = bends(0);
+    drive.odometry = without_lateness(drive.odometry, {OdometryQuantity::speed, -left_s, 0});
+    const ModeledDrive modeled = Fusion(drive, registry()).estimated({});
+    const auto left = find_lag_left(moved, modeled.placed, {}, modeled.settings, registry());
+    REQUIRE(left);
+    CHECK(left->sigma_s < 0.02);
+    CHECK(std::abs(left->late_s - left_s) < 4 * left->sigma_s);
+    CHECK(left->is_probable() == (left_s != 0));
+  }
+}
+
+TEST_CASE("late speed: nothing is said of what is beyond the reach of the search") {
+  PreparedDrive drive = bends(0);
+  drive.odometry = without_lateness(drive.odometry, {OdometryQuantity::speed, -0.3, 0});
+  const ModeledDrive modeled = Fusion(drive, registry()).estimated({});
+  CHECK_FALSE(
+      find_lag_left({OdometryQuantity::speed, 0.4, 0.05}, modeled.placed, {}, modeled.settings, registry()));
+}
+
+TEST_CASE("late yaw rate: one that was not moved far enough is moved on, and the readings at the end stay") {
+  PreparedDrive drive = bends(0);
+  drive.report.moved_quantity = {OdometryQuantity::yaw_rate, 0.3, 0.05};
+  const PreparedDrive moved = without_lag_left(drive, {0.2, 0.004});
+  REQUIRE(moved.odometry.size() == drive.odometry.size());
+  CHECK(moved.odometry[100].yaw_rate_radps == Approx(drive.odometry[102].yaw_rate_radps));
+  CHECK(moved.odometry[100].speed_mps == drive.odometry[100].speed_mps);
+  CHECK(moved.odometry.back().yaw_rate_radps == drive.odometry.back().yaw_rate_radps);
+  CHECK(moved.report.moved_quantity->earlier_s == Approx(0.5));
+  CHECK_THAT(warning_of(*moved.report.moved_quantity), Catch::Contains("state 'yaw_rate_delay: 0.500'"));
 }
 
 TEST_CASE("antenna: one that is not stated is told with its place, and is no clock that is wrong") {
@@ -185,7 +284,7 @@ TEST_CASE("clock drift: the readings move, both clocks agree at the first fix, a
   const PreparedDrive drive = bends(0);
   const PreparedDrive moved = without_drift(drive, {.rate = -1e-3});
   const Stamp first = drive.fixes.front().stamp;
-  REQUIRE(moved.odometry.size() == drive.odometry.size() + 1);
+  REQUIRE(moved.odometry.size() > drive.odometry.size());
   CHECK(moved.odometry.back().stamp == drive.odometry.back().stamp);
   for (std::size_t i = 0; i < drive.odometry.size(); i += 500)
     CHECK(seconds_between(first, moved.odometry[i].stamp) ==
