@@ -56,6 +56,7 @@ struct ClockReport {
   double spread_s = 0;  ///< median absolute deviation from it
 };
 
+/// What an odometry measures.
 enum class OdometryQuantity { speed, yaw_rate };
 
 /// Readings that were late alone, and were moved to earlier stamps.

@@ -272,7 +272,6 @@ ModeledDrive Fusion::estimated_from(PlacedDrive placed, const FusionSettings& se
   for (const std::optional<TimeOffset>& offset : offsets)
     if (offset && offset->slip.is_probable()) modeled.slip = offset->slip;
   modeled.decision = std::move(decision);
-  modeled.odometry_late_s = late_odometry(drive_, settings, modeled);
   return modeled;
 }
 
@@ -308,12 +307,18 @@ ModeledDrive Fusion::searched(const FusionSettings& settings) {
   return modeled;
 }
 
+void Fusion::take(PreparedDrive other, const FusionSettings& settings, Freed& freed) const {
+  freed.modeled = Fusion(other, registry_, between_).searched(settings);
+  freed.drive = std::make_shared<const PreparedDrive>(std::move(other));
+}
+
 bool Fusion::take_if_better(PreparedDrive other, double gain, const FusionSettings& settings,
                             Freed& freed) const {
-  ModeledDrive modeled = Fusion(other, registry_, between_).searched(settings);
-  if (!(freed.modeled.noise.cost - modeled.noise.cost > gain)) return false;
-  freed.modeled = std::move(modeled);
-  freed.drive = std::move(other);
+  Freed trial;
+  take(std::move(other), settings, trial);
+  if (!(freed.modeled.noise.cost - trial.modeled.noise.cost > gain)) return false;
+  freed.modeled = std::move(trial.modeled);
+  freed.drive = std::move(trial.drive);
   return true;
 }
 
@@ -324,7 +329,7 @@ void Fusion::free_of_drift(const FusionSettings& settings, Freed& freed) const {
   if (!has_two_clocks(drive_) || noise.parameters.empty() || freed.modeled.decision.calibration->empty())
     return;
   if (noise.is_poor_odometry(freed.modeled.placed.odometry_name)) return;
-  const PreparedDrive drifting = freed.drive_or(drive_);
+  const Readings drifting = freed.drive;
   ClockDrift drift;
   for (int round = 0; round < kMostRounds; ++round) {
     const std::optional<ClockDrift> left =
@@ -332,7 +337,8 @@ void Fusion::free_of_drift(const FusionSettings& settings, Freed& freed) const {
     if (left && round > 0) drift.sigma = left->sigma;  // with the noise that is left
     if (!left || !left->is_probable) break;
     const ClockDrift together{drift.rate + left->rate, left->sigma};
-    if (!take_if_better(without_drift(drifting, together), kGain, settings, freed)) break;
+    if (!take_if_better(without_drift(drifting ? *drifting : drive_, together), kGain, settings, freed))
+      break;
     drift = together;
   }
   freed.modeled.clock_drift = drift;
@@ -358,12 +364,10 @@ void Fusion::settle_moved_quantity(const FusionSettings& settings, Freed& freed)
   for (int round = 0; round < kMostRounds; ++round) {
     const PreparedDrive& drive = freed.drive_or(drive_);
     const std::optional<LagLeft> left =
-        find_lag_left(*drive.report.moved_quantity, freed.modeled.placed, drive.sensors,
+        find_lag_left(drive.report.moved_quantity->kind, freed.modeled.placed, drive.sensors,
                       freed.modeled.settings, registry_, between_);
     if (!left || !left->is_probable()) break;
-    PreparedDrive moved = without_lag_left(drive, *left);
-    freed.modeled = Fusion(moved, registry_, between_).searched(settings);
-    freed.drive = std::move(moved);
+    take(without_lag_left(drive, *left), settings, freed);
   }
   if (freed.drive) freed.told.push_back(warning_of(*freed.drive->report.moved_quantity));
 }
@@ -371,11 +375,11 @@ void Fusion::settle_moved_quantity(const FusionSettings& settings, Freed& freed)
 void Fusion::free_of_slip(const FusionSettings& settings, Freed& freed) const {
   constexpr double kGain = 1;     // the slip is three of its own deviations
   constexpr int kMostRounds = 8;  // what the noise hid is found in steps
-  const PreparedDrive slipping = freed.drive_or(drive_);
+  const Readings slipping = freed.drive;
   SpeedSlip slip;
   for (int round = 0; round < kMostRounds && freed.modeled.slip.is_probable(); ++round) {
     const SpeedSlip together{slip.per_mps2 + freed.modeled.slip.per_mps2, freed.modeled.slip.sigma};
-    if (!take_if_better(without_slip(slipping, together), kGain, settings, freed)) break;
+    if (!take_if_better(without_slip(slipping ? *slipping : drive_, together), kGain, settings, freed)) break;
     slip = together;
   }
   if (slip.per_mps2 != 0) freed.told.push_back(warning_of(slip));
@@ -386,11 +390,10 @@ void Fusion::put_on_time(const FusionSettings& settings, Freed& freed) const {
   constexpr int kMostRounds = 3;
   const ClockDrift drift = freed.modeled.clock_drift;
   double moved_s = 0;
-  for (int round = 0; round < kMostRounds && freed.modeled.odometry_late_s > 0; ++round) {
-    const double late_s = freed.modeled.odometry_late_s;
-    PreparedDrive moved = with_stamps_later(freed.drive_or(drive_), [&](Stamp) { return -late_s; });
-    freed.modeled = Fusion(moved, registry_, between_).searched(settings);
-    freed.drive = std::move(moved);
+  for (int round = 0; round < kMostRounds; ++round) {
+    const double late_s = late_odometry(drive_, settings, freed.modeled);
+    if (late_s == 0) break;
+    take(with_stamps_later(freed.drive_or(drive_), [&](Stamp) { return -late_s; }), settings, freed);
     moved_s += late_s;
   }
   freed.modeled.clock_drift = drift;
@@ -443,8 +446,8 @@ ModeledDrive Fusion::completed(Freed freed) const {
   ModeledDrive modeled = std::move(freed.modeled);
   std::vector<std::string>& warnings = modeled.placed.warnings;
   warnings.insert(warnings.end(), freed.told.begin(), freed.told.end());
-  if (freed.drive) modeled.other_readings = std::make_shared<PreparedDrive>(std::move(*freed.drive));
-  const PreparedDrive& drive = modeled.other_readings ? *modeled.other_readings : drive_;
+  modeled.other_readings = freed.drive;
+  const PreparedDrive& drive = freed.drive_or(drive_);
   add_deviations(modeled);
   BuiltGraph built = build_graph(modeled.placed, drive.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);

@@ -47,13 +47,10 @@ namespace waymark::drive {
 
 /// A drive with one error model, at its initial guess.
 struct ModeledDrive {
-  FusionSettings settings;  ///< from decided(), with the estimated noise among the options
-  FusionSettings decision;  ///< the same without the estimated noise
-  PlacedDrive placed;       ///< nodes, gate, initial guess
-  NoiseEstimate noise;      ///< without parameters if the noise is as stated
-  /// by which the fixes seem to come before they were measured, so that the stamps of the odometry are late; what is left
-  /// of it where they were moved. 0: they are not late
-  double odometry_late_s = 0;
+  FusionSettings settings;   ///< from decided(), with the estimated noise among the options
+  FusionSettings decision;   ///< the same without the estimated noise
+  PlacedDrive placed;        ///< nodes, gate, initial guess
+  NoiseEstimate noise;       ///< without parameters if the noise is as stated
   ClockDrift clock_drift{};  ///< of which the odometry was freed
   SpeedSlip slip{};          ///< that its speeds seem to have
   /// the drive with the readings that were fused, if they are others than those that were read: moved in time, freed
@@ -122,18 +119,21 @@ class Fusion {
   [[nodiscard]] const PlacedDrive& placed(const FusionSettings& settings);
   /// As estimated(), without the deviations of the noise.
   [[nodiscard]] ModeledDrive searched(const FusionSettings& settings);
+  using Readings = std::shared_ptr<const PreparedDrive>;  ///< of a drive; null: those that were read
   /// A drive that may be fused with other readings than those that were read.
   struct Freed {
-    ModeledDrive modeled;
-    std::optional<PreparedDrive> drive{};  ///< with those readings
-    std::vector<std::string> told{};       ///< warnings about what they were freed of
+    ModeledDrive modeled{};
+    Readings drive{};
+    std::vector<std::string> told{};  ///< warnings about what the readings were freed of
 
     [[nodiscard]] const PreparedDrive& drive_or(const PreparedDrive& as_read) const {
       return drive ? *drive : as_read;
     }
   };
-  /// Fuses a drive with other readings. @param gain by which they must be more probable, as a difference of
-  /// NoiseEstimate::cost @returns whether they are, and were taken
+  /// Fuses a drive with other readings.
+  void take(PreparedDrive other, const FusionSettings& settings, Freed& freed) const;
+  /// The same, if they are more probable. @param gain least difference of NoiseEstimate::cost @returns whether they
+  /// were taken
   bool take_if_better(PreparedDrive other, double gain, const FusionSettings& settings, Freed& freed) const;
   /// Moves the quantity that was late alone by what is left of that. Its search decides, because costs of drives that
   /// stand at other readings cannot be compared.

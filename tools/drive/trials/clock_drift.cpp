@@ -60,12 +60,9 @@ std::optional<ClockDrift> find_clock_drift(const PlacedDrive& placed, std::span<
                    between);
   DriftedDrive drive(trial);
   if (kLargest * drive.largest_in_accuracies() < kMatters) return std::nullopt;
-  const double before = drive.cost_at(-kStep);
-  const double here = drive.cost_at(0);
-  const double after = drive.cost_at(kStep);
-  const double curvature = (before - 2 * here + after) / (kStep * kStep);
-  if (!(curvature > 0)) return std::nullopt;
-  ClockDrift drift{(before - after) / (2 * kStep * curvature), trial.spread(here) / std::sqrt(curvature)};
+  const auto least = trial.least_near(0, kStep, [&](double rate) { return drive.cost_at(rate); });
+  if (!least) return std::nullopt;
+  ClockDrift drift{least->at, least->sigma};
   const double rate = std::abs(drift.rate);
   const double moved = rate * drive.largest_in_accuracies();
   const double sigmas = moved > kMasked ? kMaskedSigmas : kSigmas;
@@ -87,7 +84,7 @@ PreparedDrive with_stamps_later(PreparedDrive drive, const std::function<double(
   const double usual_s =
       seconds_between(odometry.front().stamp, end) / static_cast<double>(odometry.size() - 1);
   for (OdometrySample& sample : odometry) sample.stamp = sample.stamp.later(by_s(sample.stamp));
-  // Longer than a gap may be, one interval would be one.
+  // A single interval to the end might be longer than a gap may be.
   while (odometry.back().stamp < end) {
     OdometrySample held = odometry.back();
     held.stamp = std::min(end, held.stamp.later(usual_s));

@@ -36,7 +36,7 @@ bool LagLeft::is_probable() const {
   return std::abs(late_s) > std::max(kLeast_s, kSigmas * sigma_s);
 }
 
-std::optional<LagLeft> find_lag_left(const MovedQuantity& moved, const PlacedDrive& placed,
+std::optional<LagLeft> find_lag_left(OdometryQuantity kind, const PlacedDrive& placed,
                                      std::span<const PreparedSensor> sensors, const FusionSettings& settings,
                                      const TypeRegistry& registry, const std::function<void()>& between) {
   constexpr double kFixPeriod_s = 1;
@@ -50,19 +50,16 @@ std::optional<LagLeft> find_lag_left(const MovedQuantity& moved, const PlacedDri
   TrialDrive trial(sample_of(coarsen(placed, sensors, kFixPeriod_s, kNodePeriod_s)), settings, registry,
                    between);
   const auto cost_at = [&](double late_s) {
-    return trial.cost_with([&](PlacedDrive& drive) { move_earlier(moved.kind, late_s, drive); });
+    return trial.cost_with([&](PlacedDrive& drive) { move_earlier(kind, late_s, drive); });
   };
   LagLeft left;
   double apart_s = kFirst_s;
   for (int count = 0; count < kMostSteps; ++count) {
-    const double before = cost_at(left.late_s - apart_s);
-    const double here = cost_at(left.late_s);
-    const double after = cost_at(left.late_s + apart_s);
-    const double curvature = (before - 2 * here + after) / (apart_s * apart_s);
-    if (!(curvature > 0)) return std::nullopt;
-    const double whole_s = (before - after) / (2 * apart_s * curvature);
+    const auto least = trial.least_near(left.late_s, apart_s, cost_at);
+    if (!least) return std::nullopt;
+    const double whole_s = least->at - left.late_s;
     const double step_s = std::clamp(whole_s, -2 * apart_s, 2 * apart_s);
-    left = {left.late_s + step_s, trial.spread(here) / std::sqrt(curvature)};
+    left = {left.late_s + step_s, least->sigma};
     if (!(std::abs(left.late_s) < kFarthest_s)) return std::nullopt;
     if (std::abs(whole_s) < kReached * apart_s) return left;
     if (step_s == whole_s) apart_s = std::max(kFinest_s, 0.5 * apart_s);

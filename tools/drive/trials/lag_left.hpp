@@ -25,7 +25,7 @@ struct LagLeft {
 /// Empty if there is none within 0.15 s.
 /// @param placed with the time offsets of its fixes @param settings with the noise
 /// @param between called between its fusions; what it throws ends the search. Empty: nothing is called
-[[nodiscard]] std::optional<LagLeft> find_lag_left(const MovedQuantity& moved, const PlacedDrive& placed,
+[[nodiscard]] std::optional<LagLeft> find_lag_left(OdometryQuantity kind, const PlacedDrive& placed,
                                                    std::span<const PreparedSensor> sensors,
                                                    const FusionSettings& settings,
                                                    const TypeRegistry& registry,

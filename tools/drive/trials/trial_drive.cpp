@@ -43,4 +43,14 @@ double TrialDrive::spread(double cost) const {
   return std::max(1.0, std::sqrt(cost / static_cast<double>(coarse_.drive.fixes.size())));
 }
 
+std::optional<LeastCost> TrialDrive::least_near(double middle, double apart,
+                                                const std::function<double(double)>& cost_at) const {
+  const double before = cost_at(middle - apart);
+  const double here = cost_at(middle);
+  const double after = cost_at(middle + apart);
+  const double curvature = (before - 2 * here + after) / (apart * apart);
+  if (!(curvature > 0)) return std::nullopt;
+  return LeastCost{middle + (before - after) / (2 * apart * curvature), spread(here) / std::sqrt(curvature)};
+}
+
 }  // namespace waymark::drive

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 
 #include <Eigen/Core>
 
@@ -12,6 +13,12 @@
 #include <waymark/tools/drive/estimation/coarse.hpp>
 
 namespace waymark::drive {
+
+/// Where a cost is least, by the parabola through three costs.
+struct LeastCost {
+  double at = 0;
+  double sigma = 0;  ///< from the curvature, with TrialDrive::spread()
+};
 
 /// Refers to what it is made of, which must outlive it.
 class TrialDrive {
@@ -31,6 +38,10 @@ class TrialDrive {
   [[nodiscard]] Eigen::Vector2d velocity_at(std::size_t fix) const;
   /// Returns how many times its own noise each fix costs: what no state explains makes a cost steeper than it is known.
   [[nodiscard]] double spread(double cost) const;
+  /// Returns the least of a cost near a place; empty where it is not curved upwards.
+  /// @param cost_at by cost_with() @param apart from the middle one of the three costs to each of the others
+  [[nodiscard]] std::optional<LeastCost> least_near(double middle, double apart,
+                                                    const std::function<double(double)>& cost_at) const;
 
  private:
   CoarseDrive coarse_;
