@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <waymark/core/registry/options.hpp>
 #include <waymark/solvers/algorithms/detail/algorithms.hpp>
+#include <waymark/solvers/algorithms/detail/full_step_trial.hpp>
 #include <waymark/solvers/algorithms/detail/newton_step.hpp>
 
 namespace waymark::solvers {
@@ -20,7 +22,7 @@ struct DoglegSettings {
 
 /// Powell's dogleg in the norm |D d| with D = diag(H)^(1/2), so that metres and radians, and stiff
 /// and soft edges, count alike. The first Gauss-Newton step sets the initial radius, because no
-/// absolute number fits every problem.
+/// absolute number fits every problem. Where truncated steps crawl, full ones are tried, which may climb.
 class Dogleg final : public Algorithm {
  public:
   explicit Dogleg(const DoglegSettings& settings) : settings_(settings) {}
@@ -28,17 +30,24 @@ class Dogleg final : public Algorithm {
   void reset() override {
     radius_ = -1;
     fresh_ = true;
+    trial_.reset();
+    on_trial_ = false;
   }
 
-  [[nodiscard]] ProposalStatus propose(const NormalEquations& equations, LinearSolver& solver, double,
-                                       Step& step) override {
+  [[nodiscard]] ProposalStatus propose(const NormalEquations& equations, LinearSolver& solver,
+                                       double tolerance, Step& step) override {
     diagonal_ = &equations.diagonal();
-    if (fresh_ && !compute_newton(equations, solver)) return ProposalStatus::singular;
+    if (std::exchange(is_lost_, false)) return undone();
+    if (fresh_ && !compute_newton(equations, solver))
+      return trial_.is_on() ? undone() : ProposalStatus::singular;
     fresh_ = false;
+    on_trial_ = false;
+    if (trial_.is_on() && !may_go_on(tolerance)) return undone();
     if (radius_ < 0) radius_ = settings_.initial_radius * (settings_.absolute ? 1 : newton_norm_);
     if (radius_ < kMinRadius * newton_norm_) return ProposalStatus::exhausted;
     step.control = radius_;
-    if (newton_norm_ <= radius_ && damping_ == 0) {
+    on_trial_ = trial_.is_on() || (trial_.is_due() && damping_ == 0 && newton_norm_ > radius_);
+    if (on_trial_ || (newton_norm_ <= radius_ && damping_ == 0)) {
       step.delta = newton_;
       describe_newton_step(slope_, step);
       length_ = newton_norm_;
@@ -49,26 +58,50 @@ class Dogleg final : public Algorithm {
     return ProposalStatus::ok;
   }
 
-  [[nodiscard]] bool acceptable(double gain_ratio) const override { return gain_ratio > 1e-4; }
+  /// A full step may go uphill, on trial.
+  [[nodiscard]] bool acceptable(double gain_ratio) const override { return on_trial_ || gain_ratio > 1e-4; }
 
   // A good step sets the radius to three times its length, a poor one to half of it. An absolute
   // radius may be far longer than the step; a poor step halves it nevertheless.
-  void accepted(const Step&, double gain_ratio) override {
+  void accepted(const Step& step, double gain_ratio) override {
+    fresh_ = true;
+    if (on_trial_) {
+      trial_.took_full_step(gain_ratio * step.predicted_decrease);
+      if (!trial_.is_on()) radius_ = std::max(radius_, length_);
+      return;
+    }
+    if (!step.full_newton) trial_.took_short_step(step.predicted_decrease);
     if (gain_ratio < 0.25) {
       radius_ = 0.5 * (settings_.absolute ? radius_ : std::min(radius_, length_));
     } else if (gain_ratio > 0.75) {
       radius_ = std::max(radius_, 3 * length_);
     }
-    fresh_ = true;
   }
 
   void rejected(const Step&, double) override {
+    if (on_trial_) {
+      is_lost_ = true;  // its end was not finite
+      return;
+    }
     radius_ = settings_.absolute ? 0.5 * radius_ : 0.25 * std::min(radius_, length_);
   }
 
  private:
   static constexpr double kMinRadius = 1e-18;
   static constexpr double kMaxDamping = 1;
+
+  /// Tells whether a trial may take one more step. At a minimum above the values of before it may not.
+  [[nodiscard]] bool may_go_on(double tolerance) const {
+    return damping_ == 0 && trial_.steps() < trial_.longest() && -slope_ > tolerance;
+  }
+
+  /// Ends a trial in vain: the steps go on as before it.
+  ProposalStatus undone() {
+    trial_.fail();
+    on_trial_ = false;
+    fresh_ = true;
+    return ProposalStatus::retreat;
+  }
 
   /// The diagonal of H, with a positive floor.
   [[nodiscard]] auto safe_diagonal() const { return diagonal_->array().max(floor_); }
@@ -153,6 +186,9 @@ class Dogleg final : public Algorithm {
   double damping_ = 0;
   double radius_ = -1;
   bool fresh_ = true;
+  FullStepTrial trial_;
+  bool on_trial_ = false;  // the last proposal was a full step of a trial
+  bool is_lost_ = false;   // it was not finite
 };
 
 }  // namespace
