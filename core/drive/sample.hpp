@@ -153,7 +153,11 @@ struct Fix {
   /// displacement error in the gate; NaN: not computed
   double displacement_m = std::numeric_limits<double>::quiet_NaN();
   Eigen::Vector2d antenna_m{0, 0};  ///< of its receiver in the body frame (x forward, y left)
+  Eigen::Vector2d smoothed_m{0, 0};  ///< where its receiver has the antenna beside where it is, because it smooths
   FixDetails told = {};
+
+  /// Returns where its receiver has the antenna, in the body frame.
+  [[nodiscard]] Eigen::Vector2d antenna_seen_m() const { return antenna_m + smoothed_m; }
 };
 
 /// A pose of the reference system in the metric frame.

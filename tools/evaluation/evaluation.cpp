@@ -67,7 +67,7 @@ const Eigen::Vector3d& pose_when_measured(const EvaluationInput& input, std::siz
 /// Returns the position of the antenna of fix i by the fused trajectory.
 Eigen::Vector2d predicted_antenna(const EvaluationInput& input, std::size_t i) {
   const Eigen::Vector3d& pose = pose_when_measured(input, i);
-  return pose.head<2>() + rotate(pose[2], input.fixes[i].antenna_m);
+  return pose.head<2>() + rotate(pose[2], input.fixes[i].antenna_seen_m());
 }
 
 /// The offsets of one system over the epochs.

@@ -96,7 +96,7 @@ class PositionEdges {
 
   /// Where the antenna was in the body frame of the pose of fix i.
   [[nodiscard]] const Eigen::Vector2d& antenna(std::size_t i) const {
-    return offset_ < 0 ? input_.antenna : input_.moments[i].antenna;
+    return input_.moments.empty() ? input_.antenna : input_.moments[i].antenna;
   }
 
   /// Adds the edge of fix i.

@@ -144,6 +144,7 @@ std::string remedies(const ClockOffset& offset, bool may_be_speed_alone, double 
 /// has a report of its own.
 struct Found {
   std::vector<std::string> warnings;
+  std::string clock_warning{};
   bool tells_late_quantity = false;  ///< as PrepareReport has them
   std::optional<MovedQuantity> moved_quantity{};
 };
@@ -152,7 +153,8 @@ struct Found {
 void treat_clock(const ClockOffset& offset, const DriveLogs& logs, DriveDescription& description,
                  ClocksApart treatment, PreparedDrive& drive, Found& found) {
   std::string cure;
-  if (treatment == ClocksApart::move && is_another_clock(drive, offset)) {
+  const bool moves = treatment == ClocksApart::move && is_another_clock(drive, offset);
+  if (moves) {
     OdometryConfig& odometry = config_of(drive.odometry_name, description);
     odometry.speed_delay_s += offset.late_s;
     odometry.yaw_rate_delay_s += offset.late_s;
@@ -166,6 +168,7 @@ void treat_clock(const ClockOffset& offset, const DriveLogs& logs, DriveDescript
         remedies(offset, may_be_speed_alone, description.gnss.empty() ? 0 : description.gnss.front().delay_s);
   }
   found.warnings.push_back(clock_warning("the odometry", offset, cure));
+  if (!moves) found.clock_warning = found.warnings.back();
 }
 
 /// Moves the readings of a quantity that is late alone, until it no longer is: what a late speed seems to contradict was
@@ -223,6 +226,7 @@ PreparedDrive with_clock_told(PreparedDrive drive, const DriveLogs& logs, DriveD
   if (offset) treat_clock(*offset, logs, description, treatment, drive, found);
   drive.report.tells_late_quantity = found.tells_late_quantity;
   drive.report.moved_quantity = found.moved_quantity;
+  drive.report.clock_warning = found.clock_warning;
   for (std::string& warning : found.warnings) drive.report.warnings.push_back(std::move(warning));
   return drive;
 }

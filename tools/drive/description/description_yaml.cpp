@@ -26,6 +26,7 @@ constexpr NumberRule kRate{1e-3, 1000, "a rate in Hz from 0.001 to 1000"};
 constexpr double kLeastPeriod = 1e-3;
 constexpr NumberRule kSnap{0, kLargestSnap, "seconds from 0 to 0.05"};
 constexpr NumberRule kLater{0, 1e9, "seconds from 0 to 1e9"};
+constexpr NumberRule kSmoothing{0, 60, "0 (none), or seconds up to 60"};
 constexpr NumberRule kPeriod{0, 1e6, "0 (all), or seconds from 0.001 to 1e6"};
 constexpr NumberRule kFactor{1, std::numeric_limits<double>::max(), "a number not below 1"};
 constexpr NumberRule kWithhold{0, 1e9, "0 (none) or a whole number from 2"};
@@ -129,6 +130,7 @@ GnssConfig read_gnss(const YamlSection& section, std::string name, const DriveDe
   if (gnss.period_s > 0 && gnss.period_s < kLeastPeriod) section.fail_value("period", kPeriod.words);
   section.read("delay", gnss.delay_s, kSeconds);
   if (section.has("delay")) gnss.delay_place = section.place("delay");
+  section.read("smoothing", gnss.smoothing_s, kSmoothing);
   section.read("withhold_every", gnss.withhold_every, kWithhold);
   if (gnss.withhold_every == 1) section.fail_value("withhold_every", kWithhold.words);
   section.read("withheld", gnss.withheld);

@@ -53,6 +53,8 @@ struct GnssConfig : LogConfig {
   bool antenna_is_stated = false;   ///< be it at zero
   double delay_s = 0;               ///< how late its stamps are; subtracted
   std::string delay_place{};        ///< "drive.yaml:12:5: " of a stated delay, for messages
+  /// time of its filter (ReceiverFilter), s; 0: it does not smooth; empty: not known
+  std::optional<double> smoothing_s{};
   double period_s = 0;              ///< its fixes are thinned to one per period (0: keep all)
   int withhold_every = 0;           ///< every n-th of its fixes is left out of the graph (0: none)
   bool withheld = false;            ///< all of its fixes are left out of the graph

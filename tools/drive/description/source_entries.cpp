@@ -22,7 +22,7 @@ std::vector<std::string_view> odometry_keys() {
 }
 std::vector<std::string_view> gnss_keys() {
   return log_keys({"kind", "name", "accuracy", "frame", "velocity", "antenna", "period", "delay",
-                   "withhold_every", "withheld", "heading", "modeling", "calibration", "gate", "common"});
+                   "smoothing", "withhold_every", "withheld", "heading", "modeling", "calibration", "gate", "common"});
 }
 
 /// A receiver whose log needs ephemerides gives raw measurements: a sensor, with some keys of a receiver.

@@ -158,6 +158,7 @@ PlacedDrive without_course(const PlacedDrive& placed) {
   result.gate = placed.gate;
   result.receivers = placed.receivers;
   result.time_offsets_s = placed.time_offsets_s;
+  result.smoothings_s = placed.smoothings_s;
   result.odometry_name = placed.odometry_name;
   result.relative = placed.relative;
   result.standstill_mps = placed.standstill_mps;

@@ -327,7 +327,8 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
   for (std::size_t i = 0; i < logs.gnss.size(); ++i) {
     const GnssConfig& receiver = receiver_of(description, i);
     drive.receivers.push_back(
-        {receiver.name, receiver.antenna_m, receiver.antenna_is_stated, !receiver.delay_place.empty()});
+        {receiver.name, receiver.antenna_m, receiver.antenna_is_stated, !receiver.delay_place.empty(),
+         receiver.smoothing_s});
   }
   const std::vector<GeodeticFix> fixes = prepare_fixes(logs, description, drive.odometry, drive.report);
   const std::vector<GeodeticTruth> truth = clean_truth(logs.truth, drive.scale, drive.report);

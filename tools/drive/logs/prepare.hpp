@@ -83,6 +83,8 @@ struct PrepareReport {
   std::vector<std::string> notes;
   /// sentences about readings that contradict each other
   std::vector<std::string> warnings;
+  /// among them: that the clock of the odometry seems wrong. The fusion takes it back if it finds why
+  std::string clock_warning{};
   /// of odometries whose yaw rates no vehicle has, as if deg/s were read as rad/s: what to state, by name
   std::map<std::string, std::string> impossible_turns{};
   std::set<std::string> left_out;  ///< names of odometries that the fixes contradict
@@ -119,6 +121,8 @@ struct PreparedReceiver {
   Eigen::Vector2d antenna_m{0, 0};  ///< body frame
   bool antenna_is_stated = false;
   bool delay_is_stated = false;  ///< which was subtracted
+  /// time of its filter (ReceiverFilter), s; 0: it does not smooth; empty: not known
+  std::optional<double> smoothing_s{};
 };
 
 /// The pose of the body point at the first node, as it is stated; in the frame.

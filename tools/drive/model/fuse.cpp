@@ -14,6 +14,7 @@
 #include <waymark/tools/drive/model/build.hpp>
 #include <waymark/tools/drive/model/provenance.hpp>
 #include <waymark/tools/drive/trials/lag_left.hpp>
+#include <waymark/tools/drive/trials/receiver_smoothing.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -206,12 +207,25 @@ double late_odometry(const PreparedDrive& drive, const FusionSettings& stated, c
   return std::isfinite(late_s) ? std::max(0.0, late_s) : 0;
 }
 
+/// Takes back that the clock of the odometry seems wrong: it is known why.
+PreparedDrive with_clock_explained(PreparedDrive drive) {
+  std::erase(drive.report.warnings, drive.report.clock_warning);
+  return drive;
+}
+
 std::string words_for_late_odometry(double late_s) {
   return fmt::format(
       "the fixes seem to know positions {:.3f} s before the vehicle had them. Receivers have the clock of GNSS and "
       "are never early, so the odometry is probably late: its readings are moved by that; add {:.3f} to the 'time: "
       "{{offset}}' of its logs; if the stamps of the receiver are wrong, state its 'delay'",
       late_s, -late_s);
+}
+
+/// Returns the drive with the antenna of its only receiver at another place.
+PreparedDrive with_antenna(PreparedDrive drive, const Eigen::Vector2d& place_m) {
+  for (Fix& fix : drive.fixes) fix.antenna_m = place_m;
+  for (PreparedReceiver& receiver : drive.receivers) receiver.antenna_m = place_m;
+  return drive;
 }
 
 bool antenna_is_stated(const PreparedDrive& drive) {
@@ -372,6 +386,26 @@ void Fusion::settle_moved_quantity(const FusionSettings& settings, Freed& freed)
   if (freed.drive) freed.told.push_back(warning_of(*freed.drive->report.moved_quantity));
 }
 
+void Fusion::free_of_smoothing(const FusionSettings& settings, Freed& freed) const {
+  constexpr double kGain = 15;
+  constexpr double kSame_s = 0.02;
+  constexpr int kMostRounds = 4;
+  if (drive_.receivers.size() != 1 || drive_.receivers.front().smoothing_s) return;
+  std::optional<ReceiverSmoothing> found;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const auto now =
+        find_smoothing(freed.modeled.placed, drive_.sensors, freed.modeled.settings, registry_, between_);
+    if (!now) break;
+    PreparedDrive smoothed = with_clock_explained(freed.drive_or(drive_));
+    smoothed.receivers.front().smoothing_s = now->time_s;
+    if (!take_if_better(std::move(smoothed), round == 0 ? kGain : 0, settings, freed)) break;
+    const bool is_same = found && std::abs(found->time_s - now->time_s) < std::max(kSame_s, now->sigma_s);
+    found = now;
+    if (is_same || freed.modeled.noise.is_poor_odometry(freed.modeled.placed.odometry_name)) break;
+  }
+  if (found) freed.told.push_back(warning_of(*found, receiver_name(freed.modeled.placed, 0)));
+}
+
 void Fusion::free_of_slip(const FusionSettings& settings, Freed& freed) const {
   constexpr double kGain = 1;     // the slip is three of its own deviations
   constexpr int kMostRounds = 8;  // what the noise hid is found in steps
@@ -385,15 +419,20 @@ void Fusion::free_of_slip(const FusionSettings& settings, Freed& freed) const {
   if (slip.per_mps2 != 0) freed.told.push_back(warning_of(slip));
 }
 
-void Fusion::put_on_time(const FusionSettings& settings, Freed& freed) const {
+void Fusion::put_on_time(const FusionSettings& settings, const std::optional<AntennaPlace>& antenna,
+                         Freed& freed) const {
   constexpr double kTold_s = 0.02;
   constexpr int kMostRounds = 3;
   const ClockDrift drift = freed.modeled.clock_drift;
   double moved_s = 0;
   for (int round = 0; round < kMostRounds; ++round) {
-    const double late_s = late_odometry(drive_, settings, freed.modeled);
-    if (late_s == 0) break;
-    take(with_stamps_later(freed.drive_or(drive_), [&](Stamp) { return -late_s; }), settings, freed);
+    Freed judged;
+    if (antenna) take(with_antenna(freed.drive_or(drive_), antenna->place_m), settings, judged);
+    const double late_s = late_odometry(drive_, settings, antenna ? judged.modeled : freed.modeled);
+    if (antenna ? late_s < kTold_s : late_s == 0) break;
+    PreparedDrive on_time = with_stamps_later(freed.drive_or(drive_), [&](Stamp) { return -late_s; });
+    if (late_s >= kTold_s) on_time = with_clock_explained(std::move(on_time));
+    take(std::move(on_time), settings, freed);
     moved_s += late_s;
   }
   freed.modeled.clock_drift = drift;
@@ -405,21 +444,42 @@ void Fusion::put_on_time(const FusionSettings& settings, Freed& freed) const {
         moved_s));
 }
 
+std::optional<AntennaPlace> Fusion::antenna_beside_slip(const FusionSettings& settings, const Freed& slipping,
+                                                        Freed& freed) const {
+  const auto found_in = [&](const Freed& of) {
+    return Fusion(of.drive_or(drive_), registry_, between_).antenna_of(of.modeled, settings);
+  };
+  const auto cost_with = [&](const Freed& of, const AntennaPlace& antenna) {
+    Freed there;
+    take(with_antenna(of.drive_or(drive_), antenna.place_m), settings, there);
+    return there.modeled.noise.cost;
+  };
+  const std::optional<AntennaPlace> antenna = found_in(freed);
+  if (!antenna || freed.drive == slipping.drive) return antenna;
+  const std::optional<AntennaPlace> without = found_in(slipping);
+  if (!without || cost_with(slipping, *without) > cost_with(freed, *antenna)) return antenna;
+  freed = slipping;
+  return without;
+}
+
 ModeledDrive Fusion::model(const FusionSettings& settings) {
   refuse_misreading(placed(decision_on(settings)));
   Freed freed{searched(settings)};
+  Freed slipping;
   if (drive_.relative.empty() && !freed.modeled.noise.parameters.empty()) {
     settle_moved_quantity(settings, freed);
+    free_of_smoothing(settings, freed);
+    slipping.drive = freed.drive;
+    if (freed.modeled.slip.is_probable()) slipping = freed;
     free_of_slip(settings, freed);
   }
   // An antenna that is elsewhere looks like a clock that is wrong.
-  if (const auto antenna =
-          Fusion(freed.drive_or(drive_), registry_, between_).antenna_of(freed.modeled, settings)) {
+  const std::optional<AntennaPlace> antenna = antenna_beside_slip(settings, slipping, freed);
+  if (antenna)
     freed.told.push_back(warning_of(*antenna, receiver_name(freed.modeled.placed, 0)));
-  } else {
+  else
     free_of_drift(settings, freed);
-    put_on_time(settings, freed);
-  }
+  put_on_time(settings, antenna, freed);
   return completed(std::move(freed));
 }
 
@@ -462,6 +522,8 @@ ModeledDrive Fusion::completed(Freed freed) const {
   if (document.sources.empty() && !modeled.placed.fixes.empty())
     document.antenna_m = modeled.placed.fixes.front().antenna_m;
   document.truth_reference_m = drive.truth_reference_m;
+  const std::vector<Eigen::Vector2d> smoothed_m = smoothed_at_fixes(modeled.placed);
+  for (std::size_t i = 0; i < smoothed_m.size(); ++i) modeled.placed.fixes[i].smoothed_m = smoothed_m[i];
   document.fixes = modeled.placed.fixes;
   document.provenance = provenance_of(drive, modeled, registry_);
   return modeled;

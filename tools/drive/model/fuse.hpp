@@ -138,12 +138,21 @@ class Fusion {
   /// Moves the quantity that was late alone by what is left of that. Its search decides, because costs of drives that
   /// stand at other readings cannot be compared.
   void settle_moved_quantity(const FusionSettings& settings, Freed& freed) const;
+  /// Takes out of the fixes that the only receiver smooths them, if that is more probable.
+  void free_of_smoothing(const FusionSettings& settings, Freed& freed) const;
   void free_of_slip(const FusionSettings& settings, Freed& freed) const;
+  /// Returns where the antenna is, as antenna_of(). An antenna that is elsewhere looks like a slip, too: the odometry is
+  /// not freed of one if it is more probable without. @param slipping before it was freed of a slip
+  [[nodiscard]] std::optional<AntennaPlace> antenna_beside_slip(const FusionSettings& settings,
+                                                                const Freed& slipping, Freed& freed) const;
   /// Puts the odometry on the clock of the fixes, if its own one drifts and that is more probable. A drift that the
   /// noise hid is found in steps.
   void free_of_drift(const FusionSettings& settings, Freed& freed) const;
   /// Moves an odometry that is late to the time of the fixes.
-  void put_on_time(const FusionSettings& settings, Freed& freed) const;
+  /// @param antenna where the drive shows it, elsewhere than it is taken to be: fixes that seem early otherwise count
+  /// with it alone
+  void put_on_time(const FusionSettings& settings, const std::optional<AntennaPlace>& antenna,
+                   Freed& freed) const;
   /// Does the steps from there to the graph.
   [[nodiscard]] ModeledDrive completed(Freed freed) const;
   void add_deviations(ModeledDrive& modeled) const;

@@ -52,6 +52,9 @@ PlacedDrive begun(const PreparedDrive& drive, const Timeline& timeline, const Fu
   for (const PreparedReceiver& receiver : drive.receivers) placed.receivers.push_back(receiver.name);
   const bool unnamed = drive.receivers.empty() && !drive.fixes.empty();
   placed.time_offsets_s.assign(unnamed ? 1 : drive.receivers.size(), 0.0);
+  placed.smoothings_s.assign(placed.time_offsets_s.size(), 0.0);
+  for (std::size_t i = 0; i < drive.receivers.size(); ++i)
+    placed.smoothings_s[i] = drive.receivers[i].smoothing_s.value_or(0);
   placed.first_pose = drive.first_pose;
   placed.odometry_name = drive.odometry_name;
   placed.left_out = drive.report.left_out;

@@ -35,6 +35,8 @@ struct PlacedDrive {
   std::vector<std::string> receivers;  ///< names of the absolute sources
   /// how late the graph assumes the fixes of each absolute source to be: latency.hpp
   std::vector<double> time_offsets_s;
+  /// time of the filter of each absolute source (ReceiverFilter); 0: it does not smooth
+  std::vector<double> smoothings_s;
   std::string odometry_name;                 ///< the relative source that nodes come from
   std::vector<PreparedOdometry> relative{};  ///< as PreparedDrive::relative
   std::vector<MotionRun> runs{};             ///< what these measured; empty if there is one

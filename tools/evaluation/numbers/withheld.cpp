@@ -35,7 +35,7 @@ WithheldMetrics withheld_metrics(const Prediction& prediction, std::span<const F
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     if (fixes[i].status != FixStatus::withheld || !poses[i]) continue;
     const Eigen::Vector3d& pose = *poses[i];
-    const Eigen::Vector2d offset = pose.head<2>() + rotate(pose[2], fixes[i].antenna_m) - fixes[i].position;
+    const Eigen::Vector2d offset = pose.head<2>() + rotate(pose[2], fixes[i].antenna_seen_m()) - fixes[i].position;
     all.push_back(offset);
     if (std::binary_search(ends.begin(), ends.end(), i)) last.push_back(offset);
     if (covariances.empty() || !covariances[i]) continue;

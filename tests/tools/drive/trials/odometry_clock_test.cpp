@@ -90,6 +90,17 @@ TEST_CASE("late odometry: poses at the fixes are where the vehicle was then, not
   }
 }
 
+TEST_CASE("late odometry: beside an antenna that nobody states it is put on time as well") {
+  std::vector<Eigen::Vector2d> truth;
+  const FusedDrive fused = fuse(bends(0.2, 0, &truth, {1.5, 0}), {}, registry());
+  std::string told;
+  for (const std::string& warning : fused.model.warnings()) told += warning + '\n';
+  CHECK_THAT(told,
+             Catch::Contains("state 'antenna: [1.") && Catch::Contains("the odometry is probably late"));
+  CHECK_FALSE(told.find("for each m/s^2") != std::string::npos);
+  CHECK(rms_at_fixes(fused, truth) < 1.6);  // poses are where the antenna is; 0.2 s are 2.4 m
+}
+
 TEST_CASE("late odometry: what fuses the drive again has the readings that were moved") {
   const PreparedDrive drive = bends(0.1);
   const ModeledDrive modeled = fuse(drive, {}, registry()).model;

@@ -28,7 +28,7 @@ Eigen::Matrix2d innovation_covariance(const Fix& fix, VertexIndex pose, double h
                                       const ExpectedError& error, const Marginals& marginals) {
   std::vector<VertexIndex> vertices{pose};
   Eigen::MatrixXd jacobian(2, 3 + 2 * static_cast<Eigen::Index>(error.terms.size()));
-  const Eigen::Vector2d lever = rotate(heading_rad, fix.antenna_m);
+  const Eigen::Vector2d lever = rotate(heading_rad, fix.antenna_seen_m());
   jacobian.leftCols<2>().setIdentity();
   jacobian.col(2) << -lever.y(), lever.x();
   Eigen::Index column = 3;
@@ -62,7 +62,7 @@ std::optional<LastingInnovations> lasting_innovations(
     const Eigen::Matrix2d covariance =
         innovation_covariance(fix, *pose, heading_rad, errors.front(), *marginals);
     const Eigen::Vector2d innovation = fix.position - poses[i].head<2>() -
-                                       rotate(heading_rad, fix.antenna_m) -
+                                       rotate(heading_rad, fix.antenna_seen_m()) -
                                        errors.front().mean(document.graph);
     nu.push_back(evaluation::normalised_innovation_squared(innovation, covariance));
     promised += covariance.trace();

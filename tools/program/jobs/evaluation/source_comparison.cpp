@@ -62,7 +62,7 @@ double residual_rms(const formats::GraphDocument& document, int source, std::opt
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Fix& fix = document.fixes[i];
     if (fix.source != source || (status && fix.status != *status)) continue;
-    sum += (fix.position - poses[i].head<2>() - rotate(poses[i][2], fix.antenna_m)).squaredNorm();
+    sum += (fix.position - poses[i].head<2>() - rotate(poses[i][2], fix.antenna_seen_m())).squaredNorm();
     ++count;
   }
   return count > 0 ? std::sqrt(sum / count) : evaluation::kUndefined;
