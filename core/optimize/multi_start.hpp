@@ -50,8 +50,8 @@ struct MultiStartSummary {
 };
 
 /// Returns the largest chi2 at which a minimum is not suspicious: degrees of freedom plus six
-/// standard deviations, d + 6 sqrt(2 d). Axes without information count as measured, so the test
-/// rather accepts than rejects.
+/// standard deviations, d + 6 sqrt(2 d). What the gauge holds is no unknown. Axes without information count as
+/// measured, so the test rather accepts than rejects.
 [[nodiscard]] double plausible_chi2(const Graph& graph);
 
 /// Optimises by the rule above. Afterwards the graph holds the best values found.
