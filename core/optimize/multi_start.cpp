@@ -196,7 +196,7 @@ void MultiStart::choose_first() {
   size_ = measure(graph_);
   if (has_many_loops(size_) && !starts_.empty() && options_.max_iterations > 0) {
     file_chi2_ = graph_.chi2();
-    if (!(file_chi2_ <= acceptable(size_))) {
+    if (!(file_chi2_ <= freedom_of(size_))) {
       const StartType& start = starts_.front().type;
       const std::vector<double> values = make(start);
       if (!values.empty() && chi2_at(values) < file_chi2_) return try_from(start.name, values, kPatience);
