@@ -19,7 +19,8 @@ Marginals::Marginals(const Graph& graph) : graph_(graph), gauge_(find_gauge(grap
   NormalEquations equations(graph, structure_);
   (void)equations.linearize(graph.values());
   cholesky_.analyze(structure_.pattern());
-  if (cholesky_.factorize(equations.hessian()) != FactorStatus::ok) {
+  const bool has_factor = cholesky_.factorize(equations.hessian()) == FactorStatus::ok;
+  if (!has_factor || is_lost_in_rounding(graph, graph.values(), equations, cholesky_)) {
     throw InputError("the normal equations are not positive definite, so some vertex is not determined: " +
                      describe_weakest(graph_, equations, cholesky_));
   }

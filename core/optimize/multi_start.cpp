@@ -5,9 +5,13 @@
 #include <exception>
 
 #include <waymark/core/base/detail/elapsed.hpp>
+#include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/optimize/detail/equations.hpp>
+#include <waymark/core/optimize/detail/iteration_words.hpp>
 #include <waymark/core/optimize/multi_start.hpp>
+#include <waymark/core/system/detail/components.hpp>
+#include <waymark/core/system/detail/incidence.hpp>
 #include <waymark/core/system/gauge.hpp>
 
 namespace waymark {
@@ -26,16 +30,31 @@ constexpr double kFewLoops = 2;  // times the degrees of freedom are plausible i
 struct Size {
   std::int64_t unknowns = 0;   ///< scalar
   std::int64_t equations = 0;  ///< scalar
-  std::int64_t vertices = 0;   ///< free
-  std::int64_t loops = 0;      ///< edges between free vertices beyond a spanning tree
+  std::int64_t vertices = 0;   ///< free, with edges
+  std::int64_t loops = 0;      ///< edges between free vertices beyond a spanning tree of each part
 };
+
+/// The gauge that is refused at the present values is one of other values, where all may be seen: nothing is held then.
+std::int64_t unknowns_of(const Graph& graph) {
+  try {
+    return count_unknowns(graph, find_gauge(graph));
+  } catch (const InputError&) {
+    Gauge none;
+    none.held.assign(graph.vertex_count(), 0);
+    return count_unknowns(graph, none);
+  }
+}
 
 Size measure(const Graph& graph) {
   Size size;
+  size.unknowns = unknowns_of(graph);
+  const std::vector<std::int32_t> part = detail::find_components(graph);
+  const std::vector<char> has_edge = vertices_with_edges(graph);
+  std::int64_t parts = 0;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
-    if (graph.fixed(v)) continue;
+    if (graph.fixed(v) || has_edge[detail::at(v)] == 0) continue;
     ++size.vertices;
-    size.unknowns += graph.vertex_type(v).tangent_size;
+    parts += part[detail::at(v)] == v ? 1 : 0;
   }
   std::int64_t joints = 0;
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
@@ -47,7 +66,7 @@ Size measure(const Graph& graph) {
     });
   }
   size.equations = detail::count_equations(graph);
-  size.loops = joints - (size.vertices - 1);
+  size.loops = joints - (size.vertices - parts);
   return size;
 }
 
@@ -87,6 +106,7 @@ class MultiStart {
   void finish_best();
   void describe();
   void describe_improbable_minimum();
+  void count_iterations_in_message();
   std::vector<double> make(const StartType& start);
   double chi2_at(const std::vector<double>& values);
 
@@ -98,7 +118,7 @@ class MultiStart {
     const Summary& best = result_.summary;
     if (best.termination == Termination::interrupted || iterations_left() <= 0) return true;
     if (!best.converged()) return false;
-    return best.final_chi2 <= acceptable_ || confirmed_;
+    return best.final_chi2 <= acceptable(size_) || confirmed_;
   }
   [[nodiscard]] int iterations_left() const { return options_.max_iterations - iterations_; }
 
@@ -115,11 +135,11 @@ class MultiStart {
   std::vector<std::string> notes_;  // about starts that could not be computed or used
   std::vector<std::string> tried_;
   std::exception_ptr refusal_;  // the first one
-  double acceptable_ = 0;
-  double freedom_ = 0;
+  Size size_;
   double file_chi2_ = 0;
-  bool confirmed_ = false;  // two starts have ended at the best minimum
-  int iterations_ = 0;
+  bool confirmed_ = false;         // two starts have ended at the best minimum
+  int iterations_ = 0;             // of all runs
+  int iterations_of_message_ = 0;  // that the message of the best run tells
   Clock::time_point begin_ = Clock::now();
 };
 
@@ -162,6 +182,8 @@ void MultiStart::try_from(std::string_view start, const std::vector<double>& val
   // of equal ones the first is kept
   if (same || (!first && !(summary.final_chi2 < best.final_chi2))) return;
   confirmed_ = false;
+  iterations_of_message_ = summary.iterations;
+  size_.unknowns = summary.unknowns;  // the gauge of these values may be another one
   result_.summary = std::move(summary);
   result_.start = start;
   const bool only_one = first && !refusal_ && settled();
@@ -171,12 +193,10 @@ void MultiStart::try_from(std::string_view start, const std::vector<double>& val
 }
 
 void MultiStart::choose_first() {
-  const Size size = measure(graph_);
-  acceptable_ = acceptable(size);
-  freedom_ = freedom_of(size);
-  if (has_many_loops(size) && !starts_.empty() && options_.max_iterations > 0) {
+  size_ = measure(graph_);
+  if (has_many_loops(size_) && !starts_.empty() && options_.max_iterations > 0) {
     file_chi2_ = graph_.chi2();
-    if (!(file_chi2_ <= acceptable_)) {
+    if (!(file_chi2_ <= freedom_of(size_))) {
       const StartType& start = starts_.front().type;
       const std::vector<double> values = make(start);
       if (!values.empty() && chi2_at(values) < file_chi2_) return try_from(start.name, values, kPatience);
@@ -207,6 +227,8 @@ void MultiStart::finish_best() {
   OptimizerOptions options = options_;
   options.max_iterations = iterations_left();
   Summary rest = optimize(graph_, kept, algorithm_, options);
+  iterations_ += rest.iterations;
+  iterations_of_message_ = rest.iterations;
   rest.notes.insert(rest.notes.begin(), best.notes.begin(), best.notes.end());
   // The two parts become one run.
   for (IterationRecord& record : rest.records) record.iteration += best.iterations;
@@ -234,7 +256,20 @@ std::string number(const char* format, double value) {
   return text;
 }
 
+/// The message of a run that did not end by itself tells how many iterations it had. The limit counts those of all runs.
+void MultiStart::count_iterations_in_message() {
+  Summary& best = result_.summary;
+  const std::string told = detail::after_iterations(iterations_of_message_);
+  const std::size_t place = best.message.find(told);
+  if (place == std::string::npos) return;
+  std::string all = detail::after_iterations(best.iterations);
+  if (iterations_ > best.iterations)
+    all += " (" + std::to_string(iterations_) + " with those from other initial guesses)";
+  best.message.replace(place, told.size(), all);
+}
+
 void MultiStart::describe() {
+  count_iterations_in_message();
   std::vector<std::string>& notes = result_.summary.notes;
   notes.insert(notes.end(), notes_.begin(), notes_.end());
   if (result_.trials.size() == 1) {
@@ -260,11 +295,12 @@ void MultiStart::describe() {
 /// A false minimum says nothing but its chi2.
 void MultiStart::describe_improbable_minimum() {
   const Summary& best = result_.summary;
-  if (!best.converged() || !(best.final_chi2 > acceptable_)) return;
-  const double deviations = (best.final_chi2 - freedom_) / std::sqrt(2 * freedom_);
+  if (!best.converged() || !(best.final_chi2 > acceptable(size_))) return;
+  const double freedom = freedom_of(size_);
+  const double deviations = (best.final_chi2 - freedom) / std::sqrt(2 * freedom);
   result_.summary.notes.push_back(
       "chi2 " + number("%.6g", best.final_chi2) + " is " + number("%.3g", deviations) +
-      " standard deviations above the " + number("%.0f", freedom_) +
+      " standard deviations above the " + number("%.0f", freedom) +
       " that are expected, which is no chance: edges say too much, some are wrong, or a lower minimum exists "
       "(another initial guess or algorithm may find it)");
 }

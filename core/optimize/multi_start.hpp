@@ -4,7 +4,7 @@
 /// right, chi2 has a chi-square distribution with one degree of freedom for each measured number
 /// beyond the unknowns. So:
 /// 1. The first choice is the values that come with the graph. If the graph has loops, and chi2
-///    at these values is not already that of a minimum, the first registered start is computed
+///    at these values is above the degrees of freedom, the first registered start is computed
 ///    too. The one with lower chi2 is taken, because a Newton step costs more than a start in
 ///    such a graph.
 /// 2. If that run ends at a minimum with a plausible chi2, it is the result. In a graph with few loops twice
@@ -50,8 +50,8 @@ struct MultiStartSummary {
 };
 
 /// Returns the largest chi2 at which a minimum is not suspicious: degrees of freedom plus six
-/// standard deviations, d + 6 sqrt(2 d). Axes without information count as measured, so the test
-/// rather accepts than rejects.
+/// standard deviations, d + 6 sqrt(2 d). What the gauge holds is no unknown. Axes without information count as
+/// measured, so the test rather accepts than rejects.
 [[nodiscard]] double plausible_chi2(const Graph& graph);
 
 /// Optimises by the rule above. Afterwards the graph holds the best values found.

@@ -12,6 +12,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/graph/checks/finite_check.hpp>
 #include <waymark/core/optimize/detail/equations.hpp>
+#include <waymark/core/optimize/detail/iteration_words.hpp>
 #include <waymark/core/optimize/detail/jump_watch.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/detail/information_unit.hpp>
@@ -122,6 +123,7 @@ class Loop {
   /// Tells whether the last step was damped, which hides an unknown that the edges do not determine.
   bool was_damped() const { return summary_.records.empty() || summary_.records.back().kind != "newton"; }
   void name_undetermined();
+  bool is_undetermined(bool has_factor);
   bool not_finite_without_unknowns() const;
   /// Returns ": " and what is not finite in the graph, if something is.
   std::string named_flaw() const;
@@ -257,12 +259,13 @@ bool Loop::converged_by(const Step& step, double step_size) {
 
 std::string Loop::singular_message() {
   const Eigen::VectorXd& diagonal = equations_.diagonal();
+  Graph at_present = graph_;
+  at_present.set_values(values_);
   if (!diagonal.allFinite()) {
-    Graph at_present = graph_;
-    at_present.set_values(values_);
     return "the normal equations are not finite: " + find_not_finite(at_present).value_or("");
   }
-  return "the normal equations are not positive definite; " + describe_weakest(graph_, equations_, solver_);
+  return "the normal equations are not positive definite; " +
+         describe_weakest(at_present, equations_, solver_);
 }
 
 /// Rounding may leave no acceptable step. No minimum is lower than 0, so a chi2 that is small itself leaves nothing to gain.
@@ -494,13 +497,25 @@ std::string Loop::named_flaw() const {
   return flaw ? ": " + *flaw : "";
 }
 
+/// Tells whether H has no factor, or one that is rounding. After a step without damping the solver has that factor.
+bool Loop::is_undetermined(bool has_factor) {
+  FactorStatus status = has_factor ? FactorStatus::ok : solver_.factorize(equations_.hessian());
+  if (status == FactorStatus::ok) {
+    if (!is_on_the_verge(equations_, solver_)) return false;
+    linearize(values_);  // the last step came after the last linearisation
+    status = solver_.factorize(equations_.hessian());
+  }
+  if (status != FactorStatus::ok) return status == FactorStatus::not_positive_definite;
+  return is_lost_in_rounding(graph_, values_, equations_, solver_);
+}
+
 /// If no minimum was reached, the message names an undetermined unknown; if one was, a note does.
 void Loop::name_undetermined() {
   const bool gave_up = exhausted_ || summary_.termination == Termination::max_iterations ||
                        summary_.termination == Termination::stalled;
-  const bool may_be_one_of_many = summary_.converged() && summary_.unknowns > 0 && was_damped();
+  const bool may_be_one_of_many = summary_.converged() && summary_.unknowns > 0;
   if (!gave_up && !may_be_one_of_many) return;
-  if (solver_.factorize(equations_.hessian()) != FactorStatus::not_positive_definite) return;
+  if (!is_undetermined(!gave_up && !was_damped())) return;
   if (summary_.converged()) {
     summary_.notes.push_back(
         "the minimum is not the only one, and the values of some vertices are arbitrary: " +
@@ -530,9 +545,9 @@ Summary Loop::run() {
     }
     if (done_) break;
     if (options_.cancel != nullptr && options_.cancel->load()) {
-      finish(Termination::interrupted, text("interrupted after ", summary_.iterations, " iterations"));
+      finish(Termination::interrupted, "interrupted " + detail::after_iterations(summary_.iterations));
     } else if (summary_.iterations >= options_.max_iterations) {
-      finish(Termination::max_iterations, text("not converged after ", summary_.iterations, " iterations"));
+      finish(Termination::max_iterations, "not converged " + detail::after_iterations(summary_.iterations));
     } else {
       const bool whole = whole_curvature_ || converges_slowly();
       const bool beyond_jump = steps_beyond_jump_ > 0;

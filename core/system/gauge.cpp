@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <string_view>
+#include <utility>
 
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/error.hpp>
@@ -27,12 +29,12 @@ struct Judged {
   bool is_special = false;
 
   [[nodiscard]] bool is_anchored() const { return rank >= motions; }
+  [[nodiscard]] bool is_partly_anchored() const { return rank > 0 && !is_anchored(); }
   /// Tells whether it still turns with a vertex held: all are points.
   [[nodiscard]] bool would_turn() const { return motions == 3 && !has_pose && rank == 0; }
 };
 
-Judged judge(const Graph& graph, const Components& components, std::size_t c,
-             const Eigen::Matrix3d& information, double unit) {
+Judged judge(const Components& components, std::size_t c, const Eigen::Matrix3d& information, double unit) {
   Judged judged;
   judged.first = components.first[c];
   judged.has_pose = components.pose[c] >= 0;
@@ -40,15 +42,68 @@ Judged judge(const Graph& graph, const Components& components, std::size_t c,
   judged.count = components.count[c];
   if (!judged.has_pose && judged.count == 1) judged.motions = 2;
   judged.rank = rank_of(information, unit);
-  if (judged.rank == 0 || judged.is_anchored()) return judged;
-  const auto component = static_cast<std::int32_t>(c);
-  const Eigen::Matrix3d seen = seen_directions(graph, components, component);
-  judged.rank = rank_of(seen, 1);
-  if (judged.is_anchored()) return judged;
-  judged.unseen = unseen_motions(seen, 1);
-  judged.is_special = rank_of(seen_elsewhere(graph, components, component), 1) > judged.rank;
   return judged;
 }
+
+/// Looks closer at the components that seem to be anchored in part.
+void judge_partly_anchored(const Graph& graph, const Components& components, std::vector<Judged>& judged) {
+  std::vector<char> asked(judged.size(), 0);
+  for (std::size_t c = 0; c < judged.size(); ++c) asked[c] = judged[c].is_partly_anchored();
+  const auto none_asked = [&] { return std::count(asked.begin(), asked.end(), 0) == std::ssize(asked); };
+  if (none_asked()) return;
+  const std::vector<Eigen::Matrix3d> seen = seen_directions(graph, components, asked);
+  for (std::size_t c = 0; c < judged.size(); ++c) {
+    if (asked[c] == 0) continue;
+    judged[c].rank = rank_of(seen[c], 1);
+    if (judged[c].is_anchored())
+      asked[c] = 0;
+    else
+      judged[c].unseen = unseen_motions(seen[c], 1);
+  }
+  if (none_asked()) return;
+  const std::vector<Eigen::Matrix3d> elsewhere = seen_elsewhere(graph, components, asked);
+  for (std::size_t c = 0; c < judged.size(); ++c)
+    if (asked[c] != 0) judged[c].is_special = rank_of(elsewhere[c], 1) > judged[c].rank;
+}
+
+std::vector<Judged> judge_components(const Graph& graph, const Components& components) {
+  std::vector<Eigen::Matrix3d> information(components.first.size(), Eigen::Matrix3d::Zero());
+  const RigidMotionView motion{components.of.data(), components.places.data(), information.data()};
+  for (std::size_t b = 0; b < graph.batch_count(); ++b)
+    graph.batch(b).add_rigid_information(graph.view(), motion);
+  std::vector<Judged> judged;
+  const double unit = information_unit(graph);
+  for (std::size_t c = 0; c < components.first.size(); ++c)
+    judged.push_back(judge(components, c, information[c], unit));
+  judge_partly_anchored(graph, components, judged);
+  return judged;
+}
+
+/// Sentences about parts that are alike. The first ones are kept; a file of many parts has as many.
+class Sentences {
+ public:
+  /// @param others what is said of those that are not named: a noun, and what follows their number
+  Sentences(std::string_view others, std::string_view end) : others_(others), end_(end) {}
+
+  void add(std::string sentence, std::vector<std::string>& messages) {
+    constexpr int kNamed = 5;
+    if (++count_ <= kNamed)
+      messages.push_back(std::move(sentence));
+    else
+      ++unnamed_;
+  }
+  void finish(std::vector<std::string>& messages) const {
+    if (unnamed_ == 0) return;
+    std::string sentence(others_);
+    messages.push_back(sentence.append(": ").append(std::to_string(unnamed_)).append(end_));
+  }
+
+ private:
+  std::string_view others_;
+  std::string_view end_;
+  int count_ = 0;
+  int unnamed_ = 0;
+};
 
 std::string anchored_in_part(const Graph& graph, const Judged& judged) {
   return "vertex " + to_string(graph.id(judged.first)) +
@@ -62,6 +117,7 @@ void hold_foreign_poses(const Graph& graph, Gauge& gauge) {
   if (find_joined_foreign_pose(graph) < 0) return;
   const std::vector<std::int32_t> root = find_components(graph);
   const std::vector<char> has_edge = vertices_with_edges(graph);
+  Sentences sentences("further vertices that only edges between vertices join", ", held likewise");
   std::vector<char> anchored(graph.vertex_count(),
                              0);  // by root: by a fixed vertex, or an edge on one vertex
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
@@ -78,11 +134,13 @@ void hold_foreign_poses(const Graph& graph, Gauge& gauge) {
     char& is_anchored = anchored[at(root[v])];
     if (is_anchored == 0) {
       gauge.held[v] = 1;
-      gauge.messages.push_back(graph.vertex_type(vertex).tag + " " + to_string(graph.id(vertex)) +
-                               " is held at its present value: only edges between vertices are there");
+      sentences.add(graph.vertex_type(vertex).tag + " " + to_string(graph.id(vertex)) +
+                        " is held at its present value: only edges between vertices are there",
+                    gauge.messages);
     }
     is_anchored = 1;
   }
+  sentences.finish(gauge.messages);
 }
 
 /// Returns the coordinates of a vertex whose keeping stops the unseen motions; 0 if there are none. A heading is
@@ -121,26 +179,17 @@ std::string words_for_coordinates(const Graph& graph, const Judged& judged, Vert
          (count == 1 ? " is held at its present value" : " are held at their present values");
 }
 
-/// Tells whether a component is a drive, whose heading is a result and no convention.
-bool has_stamps(const Graph& graph, const Components& components, std::size_t c) {
-  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v)
-    if (components.of[at(v)] == static_cast<std::int32_t>(c) && graph.stamp(v)) return true;
-  return false;
-}
-
 /// Holds as many coordinates of one vertex as there are unseen motions.
-/// @return false where no vertex has them
-bool hold_coordinates(const Graph& graph, const Components& components, std::size_t c, const Judged& judged,
-                      Gauge& gauge) {
-  for (VertexIndex v = judged.holds; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
-    if (components.of[at(v)] != static_cast<std::int32_t>(c)) continue;
+/// @return a sentence that says it; empty where no vertex has them
+std::string hold_coordinates(const Graph& graph, const Components& components, std::size_t c,
+                             const Judged& judged, Gauge& gauge) {
+  for (VertexIndex v = judged.holds; v >= 0; v = components.next[at(v)]) {
     const char marks = coordinates_that_stop(graph, components.places[c], judged, v);
     if (marks == 0) continue;
     gauge.held[at(v)] = marks;
-    gauge.messages.push_back(words_for_coordinates(graph, judged, v, marks));
-    return true;
+    return words_for_coordinates(graph, judged, v, marks);
   }
-  return false;
+  return {};
 }
 
 /// @throws InputError for one whose solution is not determined whatever is held
@@ -167,29 +216,51 @@ std::string words_for_vertex(const Graph& graph, const Judged& judged) {
 
 Gauge find_gauge(const Graph& graph, PartlyAnchored partly) {
   const Components components = describe_components(graph);
-  std::vector<Eigen::Matrix3d> information(components.first.size(), Eigen::Matrix3d::Zero());
-  const RigidMotionView motion{components.of.data(), components.places.data(), information.data()};
-  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
-    graph.batch(b).add_rigid_information(graph.view(), motion);
-  }
+  const std::vector<Judged> all = judge_components(graph, components);
   Gauge gauge;
   gauge.held.assign(graph.vertex_count(), 0);
-  const double unit = information_unit(graph);
-  for (std::size_t c = 0; c < components.first.size(); ++c) {
-    const Judged judged = judge(graph, components, c, information[c], unit);
+  Sentences loose("further parts that nothing anchors",
+                  "; the first vertex of each of them is held at its present value");
+  Sentences anchored_partly("further parts that are anchored in part",
+                            "; what no edge sees of them is held at its present value");
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    const Judged& judged = all[c];
     if (judged.is_anchored()) continue;
-    if (judged.rank > 0) gauge.partly.push_back({judged.holds, components.places[c], judged.unseen});
+    const bool is_part = judged.rank > 0;
+    Sentences& sentences = is_part ? anchored_partly : loose;
+    if (is_part) gauge.partly.push_back({judged.holds, components.places[c], judged.unseen});
     if (partly == PartlyAnchored::hold_coordinates) {
-      // Only motions that stay unseen wherever the vertices go are no part of the solution.
-      const bool is_gauge = judged.motions == 3 && !judged.is_special && !has_stamps(graph, components, c);
-      if (judged.rank > 0 && is_gauge && hold_coordinates(graph, components, c, judged, gauge)) continue;
-      if (judged.rank > 0 || judged.would_turn()) refuse(graph, judged);
+      // Only motions that stay unseen wherever the vertices go are no part of the solution. The heading of a drive,
+      // which has stamps, is a result and no convention.
+      const bool is_gauge =
+          is_part && judged.motions == 3 && !judged.is_special && components.stamped[c] == 0;
+      std::string said = is_gauge ? hold_coordinates(graph, components, c, judged, gauge) : std::string();
+      if (!said.empty()) {
+        sentences.add(std::move(said), gauge.messages);
+        continue;
+      }
+      if (is_part || judged.would_turn()) refuse(graph, judged);
     }
     gauge.held[at(judged.holds)] = kWhollyHeld;
-    gauge.messages.push_back(words_for_vertex(graph, judged));
+    sentences.add(words_for_vertex(graph, judged), gauge.messages);
   }
+  loose.finish(gauge.messages);
+  anchored_partly.finish(gauge.messages);
   hold_foreign_poses(graph, gauge);
   return gauge;
+}
+
+std::int64_t count_unknowns(const Graph& graph, const Gauge& gauge) {
+  const std::vector<char> has_edge = vertices_with_edges(graph);
+  std::int64_t count = 0;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    const char mark = gauge.held[at(v)];
+    if (has_edge[at(v)] == 0 || graph.fixed(v) || is_wholly_held(mark)) continue;
+    const int size = graph.vertex_type(v).tangent_size;
+    count += size;
+    for (int k = 0; k < size && k < kMarkedCoordinates; ++k) count -= holds_coordinate(mark, k) ? 1 : 0;
+  }
+  return count;
 }
 
 }  // namespace waymark

@@ -3,6 +3,7 @@
 /// The result is a value. It is valid for the values and edges that the graph had.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,9 @@ struct Gauge {
   /// per vertex, a mark of held_marks.hpp: it keeps its value, or some coordinates of it (fixed vertices of the graph
   /// are not counted)
   std::vector<char> held;
-  std::vector<std::string> messages;  ///< one sentence per component that was held
-  std::vector<PartlyFree> partly;     ///< one per component that is anchored in part
+  /// one sentence per component that was held; of very many like parts the first ones are named, and the others counted
+  std::vector<std::string> messages;
+  std::vector<PartlyFree> partly;  ///< one per component that is anchored in part
 };
 
 /// What to do with a component that is anchored in part.
@@ -50,6 +52,12 @@ enum class PartlyAnchored {
 /// fixes, poses that all stand at one place), for one with stamps (the heading of a drive is a result), for a point
 /// that is seen in one direction only, and for one that turns about any vertex that is held (points with distances
 /// between them); it names a vertex and the missing measurement. With `hold_vertex` all of these are held
+/// Time and memory grow with the vertices and edges, whatever the number of components.
 [[nodiscard]] Gauge find_gauge(const Graph& graph, PartlyAnchored partly = PartlyAnchored::hold_coordinates);
+
+/// Returns how many numbers the edges estimate: the coordinates of the free vertices with edges, less those that the
+/// gauge holds. The degrees of freedom of chi2 are the measured numbers less these.
+/// @param gauge of the graph
+[[nodiscard]] std::int64_t count_unknowns(const Graph& graph, const Gauge& gauge);
 
 }  // namespace waymark

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <iterator>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/base/suggest.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/system/foreign_poses.hpp>
 #include <waymark/formats/graph/detail/graph_records.hpp>
@@ -11,6 +13,7 @@
 #include <waymark/formats/graph/graph_format.hpp>
 #include <waymark/formats/text/detail/byte_order_mark.hpp>
 #include <waymark/formats/text/detail/line_scanner.hpp>
+#include <waymark/formats/text/detail/utf16.hpp>
 
 namespace waymark::formats {
 namespace {
@@ -108,6 +111,9 @@ class GraphReader {
   }
 
   void read_first_line() {
+    if (is_utf16(text_))
+      throw InputError(name_ +
+                       ": is UTF-16 text, and graphs are UTF-8; convert it (iconv -f UTF-16 -t UTF-8)");
     text_ = without_byte_order_mark(text_);
     const std::string_view first = text_.substr(0, text_.find('\n'));
     LineScanner line(first, name_, 1);
@@ -291,7 +297,21 @@ class GraphReader {
           "tag " + quote_word(tag) +
           " is of a graph in space, and the types of Waymark are those of the plane, SE(2); if a plugin "
           "defines it, load it with --plugin");
-    line.fail("unknown tag " + quote_word(tag) + "; if a plugin defines it, load it with --plugin");
+    const std::string meant = did_you_mean(tag, tags_of_lines());
+    line.fail("unknown tag " + quote_word(tag) +
+              (meant.empty() ? "; if a plugin defines it, load it with --plugin"
+                             : meant + " If a plugin defines it, load it with --plugin"));
+  }
+
+  /// Returns the words at the beginning of the lines that this file may have.
+  [[nodiscard]] std::vector<std::string_view> tags_of_lines() const {
+    std::vector<std::string_view> tags;
+    for (const auto& vertex : registry_.vertices()) tags.emplace_back(vertex.type.tag);
+    for (const auto& edge : registry_.edges()) tags.emplace_back(edge.type.tag);
+    tags.emplace_back("FIX");
+    tags.emplace_back("GRAPH");
+    if (is_waymark_) tags.insert(tags.end(), std::begin(kOwnTags), std::end(kOwnTags));
+    return tags;
   }
 
   // Makes the vertices of a file that has only edges (as SE-Sync writes them): all vertices that

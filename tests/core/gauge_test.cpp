@@ -2,6 +2,7 @@
 // motions are left, rank 3 is left alone. What only the present values leave open is refused.
 #include <algorithm>
 #include <array>
+#include <chrono>
 
 #include <catch2/catch.hpp>
 
@@ -313,6 +314,83 @@ TEST_CASE("gauge: a prior of run-time arity anchors like any other") {
   graph.add_edge(*registry.find_edge("EDGE_GAUSSIAN_PRIOR"), std::array{chain[0], chain[1]}, fields,
                  Eigen::MatrixXd::Identity(6, 6));
   CHECK(held_count(find_gauge(graph)) == 0);
+}
+
+TEST_CASE("gauge: of very many parts the first ones are named, and the others counted") {
+  constexpr int kParts = 1000;
+  Graph graph;
+  const VertexIndex origin = add_fixed_origin(graph, 1'000'000);
+  for (int i = 0; i < kParts; ++i) {
+    add_chain(graph, 100 * i, 3, {0, 30.0 * i});
+    add_fix(graph, origin, add_chain(graph, 100 * i + 50, 3, {50, 30.0 * i})[1]);
+  }
+  const Gauge gauge = find_gauge(graph);
+  CHECK(held_count(gauge) == kParts);
+  CHECK(std::count(gauge.held.begin(), gauge.held.end(), mark_of_coordinate(2)) == kParts);
+  REQUIRE(gauge.messages.size() == 12);
+  CHECK_THAT(gauge.messages[0], Contains("nothing anchors vertex 0 "));
+  CHECK_THAT(gauge.messages[1], Contains("heading of vertex 50 is held"));
+  CHECK_THAT(gauge.messages[9], Contains("heading of vertex 450 is held"));
+  CHECK_THAT(gauge.messages[10], Contains("further parts that nothing anchors: 995;"));
+  CHECK_THAT(gauge.messages[11], Contains("further parts that are anchored in part: 995;"));
+}
+
+TEST_CASE("gauge: a part is judged alike alone and among many, whatever the others need") {
+  // A parked part, whose fixes stand at one place, is refused; the parts before it are held in part.
+  Graph graph;
+  const VertexIndex origin = add_fixed_origin(graph, 1'000'000);
+  for (int i = 0; i < 20; ++i) add_fix(graph, origin, add_chain(graph, 100 * i, 3, {0, 30.0 * i})[1]);
+  const VertexIndex one = graph.add_vertex<VertexSe2>(VertexId{5000}, {7, 7, 0});
+  const VertexIndex other = graph.add_vertex<VertexSe2>(VertexId{5001}, {7, 7, 0});
+  graph.add_edge(EdgeSe2{{1, 0, 0}}, {one, other}, Eigen::Matrix3d::Identity());
+  add_fix(graph, origin, one);
+  add_fix(graph, origin, other);
+  CHECK_THROWS_WITH(find_gauge(graph), Contains("vertex 5000 ") && Contains("2 of 3"));
+}
+
+TEST_CASE("gauge: the time grows with the number of parts, not with its square") {
+  const auto seconds_for = [](int parts) {
+    Graph graph;
+    const VertexIndex origin = add_fixed_origin(graph, 1'000'000'000);
+    for (int i = 0; i < parts; ++i) {
+      const auto chain = add_chain(graph, 10 * i, 2, {0, 30.0 * i});
+      if (i % 2 == 0) add_fix(graph, origin, chain[1]);
+    }
+    double least = 1e9;
+    for (int repetition = 0; repetition < 3; ++repetition) {
+      const auto begin = std::chrono::steady_clock::now();
+      CHECK(find_gauge(graph).messages.size() == 12);
+      least =
+          std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    }
+    return least;
+  };
+  // 16 times the parts: 16 times the time, and 256 times if each part looks at all vertices or edges.
+  CHECK(seconds_for(8000) < 64 * seconds_for(500));
+}
+
+TEST_CASE("gauge: the unknowns are the coordinates that the edges estimate") {
+  const TypeRegistry registry = waymark_test::full_registry();
+  Graph graph;
+  const auto unknowns = [&] {
+    Graph copy = graph;
+    const Summary summary =
+        optimize(copy, *registry.make_algorithm("dogleg"), *registry.make_linear_solver("eigen"), {});
+    CHECK(count_unknowns(graph, find_gauge(graph)) == summary.unknowns);
+    return summary.unknowns;
+  };
+  add_chain(graph, 0, 5);  // its first pose is held
+  CHECK(unknowns() == 12);
+  const VertexIndex origin = add_fixed_origin(graph, 1000);
+  add_fix(graph, origin, add_chain(graph, 20, 4, {50, 0})[1]);  // a heading is held
+  CHECK(unknowns() == 12 + 11);
+  const auto anchored = add_chain(graph, 40, 3, {0, 50});
+  graph.add_edge(EdgePriorSe2{}, {anchored[0]}, Eigen::Matrix3d::Identity());
+  CHECK(unknowns() == 12 + 11 + 9);
+  graph.add_vertex<VertexSe2>(VertexId{60}, {0, 0, 0});  // without edges
+  CHECK(unknowns() == 12 + 11 + 9);
+  graph.set_fixed(anchored[2], true);
+  CHECK(unknowns() == 12 + 11 + 6);
 }
 
 TEST_CASE("gauge: optimize says in its notes what was held and leaves it in place") {

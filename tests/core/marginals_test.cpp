@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <random>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -12,6 +13,7 @@
 #include <waymark/core/covariance/marginals.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/gauge.hpp>
+#include <waymark/types_se2/g2o_edges.hpp>
 
 #include "support/dense.hpp"
 #include "support/problems.hpp"
@@ -34,6 +36,27 @@ std::vector<VertexIndex> all_vertices(const Graph& graph) {
   std::vector<VertexIndex> all(graph.vertex_count());
   std::iota(all.begin(), all.end(), 0);
   return all;
+}
+
+/// Poses on a grid and landmarks among them, of which only directions are seen.
+Graph bearings_alone(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Graph graph;
+  for (int i = 0; i < 30; ++i)
+    graph.add_vertex<VertexSe2>(VertexId(i), {1.0 * (i % 6), 1.0 * (i / 6), 3 * unit(random)});
+  for (int l = 0; l < 8; ++l) {
+    const Eigen::Vector2d place(2.5 + 8 * unit(random), 2 + 8 * unit(random));
+    const VertexIndex landmark = graph.add_vertex<VertexXy>(VertexId(100 + l), {place[0], place[1]});
+    for (VertexIndex i = 0; i < 30; ++i) {
+      const auto pose = graph.value(i);
+      const Eigen::Vector2d seen =
+          rotate(-pose[2], Eigen::Vector2d(place - Eigen::Vector2d(pose[0], pose[1])));
+      graph.add_edge(EdgeBearingSe2Xy{std::atan2(seen[1], seen[0])}, {i, landmark},
+                     Eigen::Matrix<double, 1, 1>(2500));
+    }
+  }
+  return graph;
 }
 
 /// The whole inverse of the dense H in the order of the vertices, zero if a vertex is no
@@ -315,6 +338,35 @@ TEST_CASE("marginals: what is not determined is an error") {
   const VertexIndex v = graph.add_vertex<VertexScale>(VertexId{0}, {1});
   graph.add_edge(EdgeSigmoid{}, {v}, Eigen::Matrix<double, 1, 1>::Zero());
   CHECK_THROWS_AS(marginal_covariances(graph, std::array{v}), InputError);
+}
+
+TEST_CASE("marginals: the scale that bearings leave open is an error, whichever way its pivot is rounded") {
+  // Bearings alone determine all but the place, the heading and the scale; the gauge holds the first two.
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Graph graph = bearings_alone(seed);
+    INFO("seed " << seed);
+    CHECK_THROWS_WITH(Marginals(graph),
+                      Catch::Contains("the scale of ") && Catch::Contains(" vertices is not determined"));
+  }
+}
+
+TEST_CASE("marginals: a faint prior or a long chain is weak, and no error") {
+  // The only prior gives its own covariance, however sure the edges are (sigmas of 1 cm and 1 mrad beside 10 km).
+  Graph graph = grid_walk(300, 20);
+  constexpr VertexIndex kKnown = 150;
+  const auto value = graph.value(kKnown);
+  graph.add_edge(EdgePriorSe2{{value[0], value[1], value[2]}}, {kKnown}, 1e-8 * Eigen::Matrix3d::Identity());
+  const std::array<VertexIndex, 1> known{kKnown};
+  CHECK(marginal_covariances(graph, known)[0](0, 0) == Approx(1e8).epsilon(0.1));
+
+  // A turn of s at each link moves the last pose by all links beyond it: s^2 (1 + 4 + ... + (k - 1)^2) across the
+  // chain, beside k p^2 of its own.
+  constexpr int kPoses = 20'000;
+  const Graph chain = straight_line(kPoses, 0.1, 0.03);
+  const std::array<VertexIndex, 1> last{kPoses - 1};
+  const double steps = kPoses - 1;
+  const double squares = (steps - 1) * steps * (2 * steps - 1) / 6;
+  CHECK(marginal_covariances(chain, last)[0](1, 1) == Approx(steps * 0.01 + 9e-4 * squares).epsilon(0.05));
 }
 
 TEST_CASE("Gaussian prior: equals the pose prior with its information turned into frame axes") {

@@ -209,6 +209,102 @@ TEST_CASE("default start: a minimum that two starts agree on is believed, howeve
   CHECK(note.find("a lower minimum exists") != std::string::npos);
 }
 
+TEST_CASE("default start: what the gauge holds is no unknown of the chi2 that is expected") {
+  // A triangle of three relative poses measures nine numbers. Six are unknown with its first pose held or fixed, or
+  // with one heading held beside a fix that measures two more: three degrees of freedom each time. With priors of two
+  // places nothing is held: 13 - 9. Beside a second triangle, and vertices without edges, there are as many again.
+  const TypeRegistry registry = full_registry();
+  const auto add_triangle = [](Graph& graph, int id) {
+    std::vector<VertexIndex> poses;
+    const std::array<Eigen::Vector3d, 3> places = {Eigen::Vector3d(0, 0, 0), {1, 0, 0}, {1, 1, 0}};
+    for (const Eigen::Vector3d& p : places)
+      poses.push_back(graph.add_vertex<VertexSe2>(VertexId(id++), {p[0] + id, p[1], p[2]}));
+    const Eigen::Matrix3d information = pose_information(0.1, 0.03);
+    graph.add_edge(EdgeSe2{{1, 0, 0}}, {poses[0], poses[1]}, information);
+    graph.add_edge(EdgeSe2{{0, 1, 0}}, {poses[1], poses[2]}, information);
+    graph.add_edge(EdgeSe2{{-1, -2, 0}}, {poses[2], poses[0]}, information);
+    return poses;
+  };
+  const auto add_prior = [](Graph& graph, VertexIndex v) {
+    const auto value = graph.value(v);
+    graph.add_edge(EdgePriorSe2Xy{{value[0], value[1]}}, {v}, Eigen::Matrix2d::Identity());
+  };
+  const auto plausible = [](double freedom) { return Approx(freedom + 6 * std::sqrt(2 * freedom)); };
+  Graph graph;
+  const std::vector<VertexIndex> poses = add_triangle(graph, 1);
+  graph.add_vertex<VertexSe2>(VertexId{1000}, {0, 0, 0});
+  CHECK(plausible_chi2(graph) == plausible(3));
+  Graph fixed = graph;
+  fixed.set_fixed(poses[0], true);
+  CHECK(plausible_chi2(fixed) == plausible(3));
+  Graph partly = graph;
+  add_prior(partly, poses[1]);
+  CHECK(plausible_chi2(partly) == plausible(3));
+  add_prior(partly, poses[2]);
+  CHECK(plausible_chi2(partly) == plausible(4));
+  Graph two = graph;
+  add_triangle(two, 10);
+  CHECK(plausible_chi2(two) == plausible(6));
+
+  for (Graph* contradictory : {&graph, &fixed, &two}) {
+    const MultiStartSummary result = optimize_default(*contradictory, registry);
+    const double freedom = contradictory == &two ? 6 : 3;
+    REQUIRE(result.summary.converged());
+    const std::string& note = result.summary.notes.back();
+    INFO(note);
+    const std::size_t is = note.find(" is ");
+    REQUIRE(is != std::string::npos);
+    CHECK(std::stod(note.substr(is + 4)) ==
+          Approx((result.summary.final_chi2 - freedom) / std::sqrt(2 * freedom)).epsilon(0.005));
+    CHECK(note.find(freedom == 6 ? "above the 6 that are" : "above the 3 that are") != std::string::npos);
+  }
+}
+
+TEST_CASE("default start: the unknowns are those of the gauge at the values that are kept") {
+  // On one heap the fixes seem to leave the turn free, and nothing of it is held at the minimum: the heap is refused,
+  // and chi2 is judged by the unknowns of the other start.
+  const TypeRegistry registry = full_registry();
+  Graph graph = utm_drive(registry, "g1");
+  Graph heap = graph;
+  for (VertexIndex v = 0; v < kPoses; ++v) heap.set_value(v, std::array{0.0, 0.0, 0.0});
+  CHECK(plausible_chi2(heap) == plausible_chi2(graph));
+}
+
+TEST_CASE("default start: the message of a run in two parts counts the iterations of both") {
+  // Two starts that defeat the algorithm: each is left after 30 steps, and the better one is continued.
+  const TypeRegistry registry = full_registry();
+  const Graph drive = utm_drive(registry, "g1");
+  const auto scattered = [&](const Graph& graph, unsigned seed) {
+    Graph values = graph;
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (VertexIndex v = 0; v < kPoses; ++v) {
+      const auto value = drive.value(v);
+      values.set_value(
+          v, std::array{value[0] + 300 * unit(random), value[1] + 300 * unit(random), 3 * unit(random)});
+    }
+    return values;
+  };
+  const RegistryTable<StartType> starts = {{{"other", "scattered too",
+                                             [&](const Graph& graph) {
+                                               return InitialValues{.values = scattered(graph, 6).values(),
+                                                                    .note = ""};
+                                             }},
+                                            "test"}};
+  Graph graph = scattered(drive, 5);
+  OptimizerOptions options;
+  options.max_iterations = 70;
+  const MultiStartSummary result =
+      optimize_from_best_start(graph, starts, *registry.make_algorithm("levenberg_marquardt"),
+                               *registry.make_linear_solver("eigen"), options);
+  REQUIRE(result.trials.size() == 2);
+  REQUIRE(result.summary.termination == Termination::max_iterations);
+  CHECK(result.trials[0].iterations + result.trials[1].iterations == 70);
+  CHECK(result.summary.iterations == 40);
+  CHECK(result.summary.message.find(
+            "not converged after 40 iterations (70 with those from other initial guesses)") == 0);
+}
+
 TEST_CASE("default start: max_iterations bounds all runs together, and a cancelled run is the last") {
   const TypeRegistry registry = full_registry();
   const Graph spoilt = spoil(utm_drive(registry, "g1"), {"heading +180", 180, false},

@@ -11,6 +11,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/solvers/optimize.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
+#include <waymark/types_se2/g2o_edges.hpp>
 
 namespace hostile_graphs_test {
 
@@ -232,6 +233,35 @@ TEST_CASE("hostile graphs: a minimum that is not the only one is said, with a ve
   const std::string& note = result.summary.notes.back();
   CHECK_THAT(note, Catch::StartsWith("the minimum is not the only one"));
   CHECK_THAT(note, Catch::Contains("VERTEX_SE2 2 ") || Catch::Contains("VERTEX_SE2 4 "));
+}
+
+TEST_CASE("hostile graphs: a scale that no edge tells is said, with every algorithm") {
+  // Directions from poses to landmarks, and nothing else: every similar figure has the same chi2.
+  for (const char* algorithm : {"dogleg", "levenberg_marquardt", "gauss_newton"}) {
+    for (unsigned seed = 0; seed < 5; ++seed) {
+      std::mt19937 random(seed);
+      std::normal_distribution<double> normal(0, 1);
+      Graph graph;
+      for (int i = 0; i < 20; ++i)
+        graph.add_vertex<VertexSe2>(VertexId(i), {1.0 * (i % 5), 1.0 * (i / 5), normal(random)});
+      for (int l = 0; l < 8; ++l) {
+        const Eigen::Vector2d place(2 + 8 * normal(random), 2 + 8 * normal(random));
+        const VertexIndex landmark = graph.add_vertex<VertexXy>(VertexId(100 + l), {place[0], place[1]});
+        for (VertexIndex i = 0; i < 20; ++i) {
+          const auto pose = graph.value(i);
+          const double direction = std::atan2(place[1] - pose[1], place[0] - pose[0]) - pose[2];
+          graph.add_edge(EdgeBearingSe2Xy{wrap_angle(direction + 0.01 * normal(random))}, {i, landmark},
+                         Eigen::Matrix<double, 1, 1>(1e4));
+        }
+      }
+      const MultiStartSummary result = optimize(graph, Optimization{.algorithm = algorithm});
+      INFO(algorithm << ", seed " << seed << ": " << result.summary.message);
+      std::string said = result.summary.message;
+      for (const std::string& note : result.summary.notes) said += "\n" + note;
+      CHECK_THAT(said, Catch::Contains("the scale of ") && Catch::Contains("vertices is not determined"));
+      if (result.converged()) CHECK_THAT(said, Catch::Contains("the minimum is not the only one"));
+    }
+  }
 }
 
 TEST_CASE("hostile graphs: a star of 100,000 edges, its hub fixed or free") {

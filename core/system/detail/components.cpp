@@ -43,7 +43,9 @@ Components describe_components(const Graph& graph) {
   const std::vector<char> has_edge = vertices_with_edges(graph);
   Components result;
   result.of.assign(graph.vertex_count(), -1);
+  result.next.assign(graph.vertex_count(), -1);
   std::vector<std::int32_t> number(graph.vertex_count(), -1);  // of the component with that root
+  std::vector<VertexIndex> last;
   std::vector<Eigen::AlignedBox2d> boxes;
   for (std::size_t v = 0; v < graph.vertex_count(); ++v) {
     const auto vertex = static_cast<VertexIndex>(v);
@@ -56,10 +58,16 @@ Components describe_components(const Graph& graph) {
       result.first.push_back(vertex);
       result.pose.push_back(-1);
       result.count.push_back(0);
+      result.stamped.push_back(0);
       boxes.emplace_back();
+      last.push_back(vertex);
+    } else {
+      result.next[at(last[at(component)])] = vertex;
+      last[at(component)] = vertex;
     }
     result.of[v] = component;
     ++result.count[at(component)];
+    if (graph.stamp(vertex)) result.stamped[at(component)] = 1;
     boxes[at(component)].extend(type.position(graph.value(vertex).data()));
     if (result.pose[at(component)] < 0 && !own_turn(graph, vertex).isZero(0))
       result.pose[at(component)] = vertex;

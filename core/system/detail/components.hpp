@@ -16,9 +16,11 @@ namespace waymark::detail {
 /// The components of the vertices that a rigid motion moves.
 struct Components {
   std::vector<std::int32_t> of;    // per vertex; -1: the vertex is fixed or does not move
+  std::vector<VertexIndex> next;   // per vertex: the next one of its component; -1: it is the last
   std::vector<VertexIndex> first;  // first vertex with edges
   std::vector<VertexIndex> pose;   // first vertex that a turn about itself changes; -1: all are points
   std::vector<int> count;          // vertices that move
+  std::vector<char> stamped;       // not 0: one of them has a stamp
   std::vector<RigidMotionView::Place> places;
 };
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
 
 #include <waymark/core/base/detail/index.hpp>
@@ -49,43 +50,53 @@ Eigen::MatrixXd unseen_motions(const Eigen::Matrix3d& information, double unit) 
   return eigen.vectors.leftCols(3 - rank_of(information, unit));
 }
 
-Eigen::Matrix3d seen_directions(const Graph& graph, const Components& components, std::int32_t component) {
-  Eigen::Matrix3d directions = Eigen::Matrix3d::Zero();
+std::vector<Eigen::Matrix3d> seen_directions(const Graph& graph, const Components& components,
+                                             std::span<const char> asked) {
+  std::vector<Eigen::Matrix3d> directions(components.first.size(), Eigen::Matrix3d::Zero());
   Eigen::VectorXd error;
   std::vector<Eigen::MatrixXd> jacobians;
-  const RigidMotionView::Place& place = components.places[at(component)];
+  const auto component_of = [&](VertexIndex v) { return components.of[at(v)]; };
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
     const EdgeBatchBase& batch = graph.batch(b);
     for (std::size_t e = 0; e < batch.size(); ++e) {
       const std::span<const VertexIndex> vertices = batch.vertices(e);
-      const auto is_moved = [&](VertexIndex v) { return components.of[at(v)] == component; };
-      if (std::none_of(vertices.begin(), vertices.end(), is_moved)) continue;
+      // The vertices of an edge that move are joined by it, so they are all of one component.
+      const auto moving =
+          std::find_if(vertices.begin(), vertices.end(), [&](VertexIndex v) { return component_of(v) >= 0; });
+      if (moving == vertices.end() || asked[at(component_of(*moving))] == 0) continue;
+      const std::size_t component = at(component_of(*moving));
       batch.linearize_edge(e, graph.view(), error, jacobians);
       Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(error.size(), 3);
       Eigen::MatrixXd terms = moved;
       for (std::size_t k = 0; k < vertices.size(); ++k) {
-        if (!is_moved(vertices[k])) continue;
-        const Eigen::MatrixXd motion = motion_of(graph, vertices[k], place);
+        if (component_of(vertices[k]) < 0) continue;
+        const Eigen::MatrixXd motion = motion_of(graph, vertices[k], components.places[component]);
         moved += jacobians[k] * motion;
         terms += jacobians[k].cwiseAbs() * motion.cwiseAbs();
       }
-      if (!moved.allFinite()) return Eigen::Matrix3d::Identity();  // as in rank_of
+      // As in rank_of. What is added later is no less than that.
+      if (!moved.allFinite()) {
+        directions[component] += Eigen::Matrix3d::Identity();
+        continue;
+      }
       const Eigen::MatrixXd rows = known_rows(batch.information(e), moved, terms);
       for (Eigen::Index row = 0; row < rows.rows(); ++row)
         if (rows.row(row).squaredNorm() > 0)
-          directions += rows.row(row).normalized().transpose() * rows.row(row).normalized();
+          directions[component] += rows.row(row).normalized().transpose() * rows.row(row).normalized();
     }
   }
   return directions;
 }
 
-Eigen::Matrix3d seen_elsewhere(const Graph& graph, const Components& components, std::int32_t component) {
+std::vector<Eigen::Matrix3d> seen_elsewhere(const Graph& graph, const Components& components,
+                                            std::span<const char> asked) {
   std::mt19937 random(1);
   const auto draw = [&] { return 2.0 * static_cast<double>(random()) / std::mt19937::max() - 1; };
-  const RigidMotionView::Place& place = components.places[at(component)];
   Graph elsewhere = graph;
   for (std::size_t v = 0; v < graph.vertex_count(); ++v) {
-    if (components.of[v] != component) continue;
+    const std::int32_t component = components.of[v];
+    if (component < 0 || asked[at(component)] == 0) continue;
+    const RigidMotionView::Place& place = components.places[at(component)];
     const auto vertex = static_cast<VertexIndex>(v);
     const Eigen::Vector3d way(draw(), draw(), draw());
     const Eigen::VectorXd step = place.extent * (motion_of(graph, vertex, place) * way);
@@ -93,7 +104,7 @@ Eigen::Matrix3d seen_elsewhere(const Graph& graph, const Components& components,
     graph.vertex_type(vertex).retract(value.data(), step.data());
     elsewhere.set_value(vertex, value);
   }
-  return seen_directions(elsewhere, components, component);
+  return seen_directions(elsewhere, components, asked);
 }
 
 }  // namespace waymark::detail

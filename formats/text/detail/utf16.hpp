@@ -6,6 +6,12 @@
 
 namespace waymark::formats {
 
+/// Tells whether a text begins with the byte order mark of UTF-16, or as ASCII in UTF-16 without one.
+[[nodiscard]] constexpr bool is_utf16(std::string_view text) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return true;
+  return text.size() >= 2 && (text[0] == '\0') != (text[1] == '\0');
+}
+
 /// Converts a text in pieces to UTF-8, if it begins with the byte order mark of UTF-16. Any other text stays.
 class Utf16Text {
  public:

@@ -58,6 +58,12 @@ const std::vector<double> kSpeeds{10, 20};
 
 }  // namespace
 
+TEST_CASE("can layouts: a frame of PEAK begins with its number, so a word and zeros are none") {
+  const CanLogReader reader("trc");
+  CHECK(reader.recognise("vertex_se2 0 0 0 0\nvertex_se2 1 1 0 0\n").certainty == 0);
+  CHECK(reader.recognise("1) 0.5 7E8 3 41 0D 24\n2) 1.5 7E8 3 41 0D 48\n").certainty > 0.5);
+}
+
 TEST_CASE("asc: frames of Vector's logs, whose date is the origin of their seconds") {
   const std::string log =
       "date Mon Jul 26 10:14:15.000 am 2021\n"
@@ -186,10 +192,11 @@ TEST_CASE("trc: warnings, errors, remote frames and status lines are no frames o
 
 TEST_CASE("trc: a head without a column of times leaves no frame with a stamp") {
   CHECK_THROWS_MATCHES(
-      CanLogReader("trc").read(";$COLUMNS=N,T,B,I,d,R,L,D\n1 DT 1 07E8 Rx - 8 03 41 0D 24 00 00 00 00\n", "car.log",
-                               speed_request()),
-      InputError, Catch::Matchers::Message("car.log: none of 1 records could be used; first: car.log:2:1: '' is no "
-                                           "time in decimal seconds"));
+      CanLogReader("trc").read(";$COLUMNS=N,T,B,I,d,R,L,D\n1 DT 1 07E8 Rx - 8 03 41 0D 24 00 00 00 00\n",
+                               "car.log", speed_request()),
+      InputError,
+      Catch::Matchers::Message("car.log: none of 1 records could be used; first: car.log:2:1: '' is no "
+                               "time in decimal seconds"));
 }
 
 TEST_CASE("can: speed of OBD-II and J1939 without a DBC") {

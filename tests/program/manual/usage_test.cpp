@@ -112,6 +112,9 @@ TEST_CASE("usage: a file of the wrong kind is answered in two lines by the comma
                  "describes a drive, and 'optimize' wants a graph; type\n  waymark convert " + drive));
   CHECK(contains(answer({"check", drive}), "describes a drive, and 'check' wants a graph"));
   CHECK(contains(answer({"run", graph}), "is a graph, and 'run' wants a drive.yaml"));
+  const std::string blanks = write_text(
+      folder + "blanks.g2o", "\n VERTEX_SE2 0 0 0 0\n VERTEX_SE2 1 1 0 0\n EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n");
+  CHECK(contains(answer({"run", blanks}), "is a graph, and 'run' wants a drive.yaml"));
   CHECK(contains(answer({"init", drive}),
                  "describes a drive, and 'init' wants logs; type\n  waymark inspect "));
   // A long line of rubbish named as a drive is not printed whole.
@@ -119,6 +122,23 @@ TEST_CASE("usage: a file of the wrong kind is answered in two lines by the comma
   const RunResult refused = run({"run", rubbish, "-o", folder + "out"});
   CHECK(refused.code == 3);
   CHECK(refused.err.size() < 300 + rubbish.size());
+}
+
+TEST_CASE("usage: a small graph is no log, whatever stands before its tags and however these are spelt") {
+  const std::string folder = fresh_folder();
+  const std::string body = "0 0 0 0\nVERTEX_SE2 1 1 0 0\nEDGE_SE2 0 1 1 0 0 100 0 0 100 0 1000\n";
+  for (const std::string begin : {" VERTEX_SE2 ", "\t\tVERTEX_SE2 ", "\xEF\xBB\xBFVERTEX_SE2 "}) {
+    const std::string graph = write_text(folder + "a.g2o", begin + body);
+    INFO(begin);
+    CHECK(run({"check", graph}).code == 0);
+    CHECK(run({"optimize", graph, "-o", folder + "o.graph"}).code == 0);
+  }
+  for (const std::string begin : {"vertex_se2 ", "Vertex_SE2 ", "VERTX_SE2 "}) {
+    const std::string graph = write_text(folder + "a.g2o", begin + body);
+    check_refused(
+        run({"optimize", graph, "-o", folder + "o.graph"}), 3,
+        graph + ":1:1: unknown tag '" + begin.substr(0, begin.size() - 1) + "'; did you mean 'VERTEX_SE2'?");
+  }
 }
 
 TEST_CASE("usage: what is mistyped is answered by what was meant, before anything is read") {

@@ -10,6 +10,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/log_file.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
+#include <waymark/formats/text/detail/byte_order_mark.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/program/manual/option_text.hpp>
 #include <waymark/tools/program/manual/usage_hints.hpp>
@@ -35,10 +36,12 @@ std::vector<FileKind> wanted_by(const CLI::App& command) {
 
 /// Tells whether the first line that is no comment is one of a graph.
 bool is_graph_text(std::string_view text) {
+  text = formats::without_byte_order_mark(text);
   while (!text.empty()) {
-    const std::string_view line = text.substr(0, text.find('\n'));
+    std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(text.size(), line.size() + 1));
-    if (line.empty() || line.front() == '#' || line.front() == '\r') continue;
+    line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size()));
+    if (line.empty() || line.front() == '#') continue;
     constexpr std::array<std::string_view, 5> kTags{"GRAPH ", "VERTEX", "EDGE", "FIX ", "PARAMS_"};
     return std::any_of(kTags.begin(), kTags.end(),
                        [&](std::string_view tag) { return line.starts_with(tag); });

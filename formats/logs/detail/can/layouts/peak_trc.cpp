@@ -89,6 +89,8 @@ void PeakTrc::take_head(std::string_view line) {
 bool PeakTrc::take_word(char column, std::string_view word, CanLine& result) const {
   if (word.empty()) return false;
   switch (column) {
+    case 'N':  // "12)" or "12"
+      return word.front() >= '0' && word.front() <= '9';
     case 'O':
       result.stamp = word;
       return true;
