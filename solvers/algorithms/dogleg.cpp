@@ -31,7 +31,7 @@ class Dogleg final : public Algorithm {
     radius_ = -1;
     fresh_ = true;
     trial_.reset();
-    on_trial_ = false;
+    on_trial_ = is_lost_ = false;
   }
 
   [[nodiscard]] ProposalStatus propose(const NormalEquations& equations, LinearSolver& solver,

@@ -80,6 +80,29 @@ TEST_CASE("a live estimate is near the truth, and its regions hold it", "[live]"
   CHECK(coverage > 0.9);
 }
 
+TEST_CASE("a receiver whose filter is stated is no longer beside the vehicle", "[live]") {
+  // An alpha-beta filter stays behind by (1 - alpha) dt^2 / beta times the acceleration, a ReceiverFilter by T^2.
+  constexpr double kBeta = 0.1;
+  const double alpha = std::sqrt(2 * kBeta);
+  LiveDrive drive = live_drive("urban", 300);
+  Eigen::Vector2d place(0, 0);
+  Eigen::Vector2d velocity(0, 0);
+  for (Sample& sample : drive.arrivals) {
+    if (!is_fix(sample)) continue;
+    GeodeticFix& fix = fix_of(sample);
+    const Eigen::Vector2d measured(fix.latitude_deg, fix.longitude_deg);
+    const Eigen::Vector2d expected = place.isZero() ? measured : Eigen::Vector2d(place + velocity);
+    place = expected + alpha * (measured - expected);
+    velocity += kBeta * (measured - expected);
+    fix.latitude_deg = place.x();
+    fix.longitude_deg = place.y();
+  }
+  drive::DriveDescription description = live_description();
+  const double without_m = rms(settled_errors_m(listen(description, drive.arrivals), drive));
+  description.gnss.front().smoothing_s = std::sqrt((1 - alpha) / kBeta);
+  CHECK(rms(settled_errors_m(listen(description, drive.arrivals), drive)) < 0.7 * without_m);
+}
+
 TEST_CASE("every modeling of a batch run is live too", "[live]") {
   const std::string modeling = GENERATE("correlated", "g1", "g2", "g3");
   CAPTURE(modeling);

@@ -145,6 +145,7 @@ std::string remedies(const ClockOffset& offset, bool may_be_speed_alone, double 
 struct Found {
   std::vector<std::string> warnings;
   std::string clock_warning{};
+  double clock_late_s = 0;
   bool tells_late_quantity = false;  ///< as PrepareReport has them
   std::optional<MovedQuantity> moved_quantity{};
 };
@@ -168,7 +169,9 @@ void treat_clock(const ClockOffset& offset, const DriveLogs& logs, DriveDescript
         remedies(offset, may_be_speed_alone, description.gnss.empty() ? 0 : description.gnss.front().delay_s);
   }
   found.warnings.push_back(clock_warning("the odometry", offset, cure));
-  if (!moves) found.clock_warning = found.warnings.back();
+  if (moves) return;
+  found.clock_warning = found.warnings.back();
+  found.clock_late_s = offset.late_s;
 }
 
 /// Moves the readings of a quantity that is late alone, until it no longer is: what a late speed seems to contradict was
@@ -217,6 +220,9 @@ PreparedDrive with_clock_told(PreparedDrive drive, const DriveLogs& logs, DriveD
                               ClocksApart treatment) {
   std::optional<ClockOffset> offset = offset_shown(drive.odometry, drive.fixes);
   const bool is_far = offset && std::abs(offset->late_s) > kOneClock_s;
+  // Fixes that are filtered move and turn late, and are not.
+  const auto smooths = [](const PreparedReceiver& receiver) { return receiver.smoothing_s.value_or(0) > 0; };
+  if (!is_far && std::any_of(drive.receivers.begin(), drive.receivers.end(), smooths)) return drive;
   const auto late =
       is_far ? std::nullopt : late_quantity_shown(drive.odometry, drive.fixes, drive.yaw_rate_at_rest);
   Found found;
@@ -227,6 +233,7 @@ PreparedDrive with_clock_told(PreparedDrive drive, const DriveLogs& logs, DriveD
   drive.report.tells_late_quantity = found.tells_late_quantity;
   drive.report.moved_quantity = found.moved_quantity;
   drive.report.clock_warning = found.clock_warning;
+  drive.report.clock_late_s = found.clock_late_s;
   for (std::string& warning : found.warnings) drive.report.warnings.push_back(std::move(warning));
   return drive;
 }

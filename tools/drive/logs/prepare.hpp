@@ -85,6 +85,7 @@ struct PrepareReport {
   std::vector<std::string> warnings;
   /// among them: that the clock of the odometry seems wrong. The fusion takes it back if it finds why
   std::string clock_warning{};
+  double clock_late_s = 0;  ///< by which it seems late there
   /// of odometries whose yaw rates no vehicle has, as if deg/s were read as rad/s: what to state, by name
   std::map<std::string, std::string> impossible_turns{};
   std::set<std::string> left_out;  ///< names of odometries that the fixes contradict

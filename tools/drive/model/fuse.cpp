@@ -422,6 +422,7 @@ void Fusion::free_of_slip(const FusionSettings& settings, Freed& freed) const {
 void Fusion::put_on_time(const FusionSettings& settings, const std::optional<AntennaPlace>& antenna,
                          Freed& freed) const {
   constexpr double kTold_s = 0.02;
+  constexpr double kAsTold = 0.5;
   constexpr int kMostRounds = 3;
   const ClockDrift drift = freed.modeled.clock_drift;
   double moved_s = 0;
@@ -431,7 +432,8 @@ void Fusion::put_on_time(const FusionSettings& settings, const std::optional<Ant
     const double late_s = late_odometry(drive_, settings, antenna ? judged.modeled : freed.modeled);
     if (antenna ? late_s < kTold_s : late_s == 0) break;
     PreparedDrive on_time = with_stamps_later(freed.drive_or(drive_), [&](Stamp) { return -late_s; });
-    if (late_s >= kTold_s) on_time = with_clock_explained(std::move(on_time));
+    if (late_s >= kAsTold * drive_.report.clock_late_s && drive_.report.clock_late_s > 0)
+      on_time = with_clock_explained(std::move(on_time));
     take(std::move(on_time), settings, freed);
     moved_s += late_s;
   }

@@ -1,3 +1,4 @@
+#include <waymark/tools/drive/model/build.hpp>
 #include <waymark/tools/drive/model/place.hpp>
 #include <waymark/tools/drive/model/surroundings.hpp>
 
@@ -235,6 +236,8 @@ PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, co
     return placed;
   }
   placed.warnings = drive.report.warnings;
+  const std::vector<Eigen::Vector2d> smoothed_m = smoothed_at_fixes(placed);
+  for (std::size_t i = 0; i < smoothed_m.size(); ++i) placed.fixes[i].smoothed_m = smoothed_m[i];
   std::vector<Eigen::Vector3d> antenna = reckoned_antenna(timeline, placed.fixes, placed.standstill_mps);
   compare_with_fixes(drive, antenna, placed);
   std::optional<Timeline> mended;  // the turns that the vehicle made

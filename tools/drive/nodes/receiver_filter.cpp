@@ -2,17 +2,25 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::drive {
 
 void ReceiverFilter::advance(const Interval& interval, double standstill_mps) {
+  constexpr double kForgotten = 8;  // times its time: less than 1 % of what the filter was off is left
   const bool stands = interval.stands(standstill_mps);
   const double half_turn_rad = stands ? 0 : 0.5 * interval.yaw_rate_radps * interval.dt_s;
   const Eigen::Vector2d velocity(stands ? 0 : interval.speed_mps, 0);
-  if (!has_begun_) velocity_mps_ = velocity;
-  has_begun_ = true;
+  // The motion in a long gap is not known: it begins anew behind it.
+  const bool begins = std::exchange(is_settled_, false);
+  if (begins) velocity_mps_ = velocity;
+  if (interval.bridged && interval.dt_s > kForgotten * time_s_) {
+    beside_m_.setZero();
+    is_settled_ = true;
+    return;
+  }
   // Along the chord of the interval the velocity is constant: the exact solution of the linear equations, whose
   // eigenvalues are -rate +- i rate.
   const double rate = 1 / (std::numbers::sqrt2 * time_s_);

@@ -32,7 +32,7 @@ class ReceiverFilter {
 
  private:
   double time_s_;
-  bool has_begun_ = false;
+  bool is_settled_ = true;  ///< it takes the velocity of the next interval
   Eigen::Vector2d beside_m_{0, 0};
   Eigen::Vector2d velocity_mps_{0, 0};  ///< that the filter believes in, body frame
 };

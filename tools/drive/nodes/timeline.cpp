@@ -208,7 +208,7 @@ std::vector<Eigen::Vector3d> antenna_at_fixes(const Timeline& timeline,
   antennas.reserve(timeline.fix_node.size());
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     Eigen::Vector3d pose = poses[timeline.fix_node[i]];
-    pose.head<2>() += rotate(pose[2], fixes[i].antenna_m);
+    pose.head<2>() += rotate(pose[2], fixes[i].antenna_seen_m());
     antennas.push_back(pose);
   }
   return antennas;

@@ -19,16 +19,20 @@ double cost_at(double time_s, TrialDrive& trial) {
 }
 
 /// Returns where to look for the time of a filter: where it is taken to be, or the first of some times with which the
-/// fixes are far more probable than without a filter. Empty if there is none.
+/// fixes are far more probable than without a filter. Empty if there is none. What a filter does grows with the square of
+/// its time, so where a short one costs more than none, a longer one does.
 std::optional<double> first_time(double taken_s, TrialDrive& trial) {
   constexpr std::array kTimes_s = {0.5, 1.0, 2.0, 4.0};
   constexpr double kGain = 15;
   if (taken_s > 0) return taken_s;
   const double without = cost_at(0, trial);
-  const double least = without - kGain * std::pow(trial.spread(without), 2);
-  const auto found = std::find_if(kTimes_s.begin(), kTimes_s.end(),
-                                  [&](double time_s) { return cost_at(time_s, trial) < least; });
-  return found == kTimes_s.end() ? std::nullopt : std::optional(*found);
+  const double gain = kGain * std::pow(trial.spread(without), 2);
+  for (const double time_s : kTimes_s) {
+    const double cost = cost_at(time_s, trial);
+    if (cost < without - gain) return time_s;
+    if (!(cost < without)) return std::nullopt;
+  }
+  return std::nullopt;
 }
 
 }  // namespace

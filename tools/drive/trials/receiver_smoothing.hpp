@@ -22,7 +22,8 @@ struct ReceiverSmoothing {
 /// sample of the drive. It is a proposal, and the evidence decides.
 /// @param placed with the time offsets of its fixes, and what is taken for its smoothing @param settings with the noise
 /// @param between called between its fusions; what it throws ends the search. Empty: nothing is called
-/// @return empty if there are several receivers, if half chi2 falls by less than 15, or if the time is beyond 10 s
+/// @return empty if there are several receivers, if half chi2 falls by less than 15 (more where no
+/// state explains the fixes), or if the time is beyond 10 s
 [[nodiscard]] std::optional<ReceiverSmoothing> find_smoothing(const PlacedDrive& placed,
                                                               std::span<const PreparedSensor> sensors,
                                                               const FusionSettings& settings,

@@ -9,6 +9,7 @@
 
 #include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/nodes/receiver_filter.hpp>
 #include <waymark/tools/drive/sensors/rough_fixes.hpp>
 #include <waymark/tools/live/estimator/window/window_setup.hpp>
 #include <waymark/tools/live/learning/claims_ahead.hpp>
@@ -378,6 +379,25 @@ Fix Estimator::projected(const GeodeticFix& fix) {
   return place;
 }
 
+/// Returns Fix::smoothed_m, if the filter of its receiver is stated.
+Eigen::Vector2d Estimator::smoothed_m(const Fix& fix) const {
+  constexpr double kForgotten = 8;  // times the time of a filter: less than 1 % of its error is left
+  const double time_s = description_.gnss[static_cast<std::size_t>(fix.source)].smoothing_s.value_or(0);
+  if (!(time_s > 0)) return {0, 0};
+  const std::deque<Reckoning::Node>& nodes = reckoning_.nodes();
+  const auto node_at = [&](Stamp moment) {
+    const auto first =
+        std::lower_bound(nodes.begin(), nodes.end(), moment,
+                         [](const Reckoning::Node& node, Stamp stamp) { return node.sample.stamp < stamp; });
+    return static_cast<std::size_t>(first - nodes.begin());
+  };
+  drive::ReceiverFilter filter(time_s);
+  const std::size_t end = std::min(node_at(fix.stamp) + 1, nodes.size());
+  for (std::size_t node = node_at(fix.stamp.later(-kForgotten * time_s)) + 1; node < end; ++node)
+    filter.advance(reckoning_.motion_to_node(node), reckoning_.standstill_mps());
+  return filter.beside_m();
+}
+
 void Estimator::use(const GeodeticFix& geodetic) {
   if (reckoning_.empty() || geodetic.stamp < reckoning_.begin() ||
       (window_ && geodetic.stamp < window_->oldest())) {
@@ -391,6 +411,7 @@ void Estimator::use(const GeodeticFix& geodetic) {
   Fix fix = projected(geodetic);
   fix.epoch = ++epoch_;
   reckoning_.set_grid_scale(fix.grid_scale);
+  fix.smoothed_m = smoothed_m(fix);
   if (const std::string reason = judge_.reason_against(fix, reckoning_, window_.get()); !reason.empty()) {
     const double off_m = window_ ? (fix.position - window_->antenna_at(fix)).norm() : 0;
     refuse(geodetic, reason,

@@ -95,6 +95,7 @@ class Estimator {
   void use_rough_places();
   [[nodiscard]] const drive::Projection& projection_at(const GeodeticPoint& place);
   [[nodiscard]] Fix projected(const GeodeticFix& fix);
+  [[nodiscard]] Eigen::Vector2d smoothed_m(const Fix& fix) const;
   void begin_at_believed(int source);
   void align();
   void align_warm();

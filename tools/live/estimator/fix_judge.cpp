@@ -65,7 +65,7 @@ std::string FixJudge::judged_by_gate(const Fix& fix, const Reckoning& reckoning)
   if (!gate.enabled.value_or(true)) return "";
   Receiver& receiver = receivers_[fix.source];
   Eigen::Vector3d antenna = reckoning.at(fix.stamp).pose;
-  antenna.head<2>() += rotate(antenna[2], fix.antenna_m);
+  antenna.head<2>() += rotate(antenna[2], fix.antenna_seen_m());
   if (!receiver.judged.empty() && fix.stamp <= receiver.judged.back().stamp) return "";  // a late one
   receiver.judged.push_back(fix);
   receiver.reckoned.push_back(antenna);

@@ -58,7 +58,7 @@ PlacedStretch placed_at(const Eigen::Vector3d& pose, const Reckoning& reckoning)
 
 std::optional<double> moved_since(const WarmStart& start, const Fix& fix, const LiveSettings& live) {
   const Eigen::Vector3d& pose = *start.pose;
-  const Eigen::Vector2d antenna = pose.head<2>() + rotate(pose[2], fix.antenna_m);
+  const Eigen::Vector2d antenna = pose.head<2>() + rotate(pose[2], fix.antenna_seen_m());
   const Eigen::Matrix2d spread =
       start.covariance.topLeftCorner<2, 2>() + 4 * fix.covariance + 25 * Eigen::Matrix2d::Identity();
   const Eigen::Vector2d off = fix.position - antenna;

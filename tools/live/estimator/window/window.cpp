@@ -306,7 +306,7 @@ Eigen::Vector2d Window::antenna_at(const Fix& fix) const {
   const auto at_node = graph_.value(nodes.poses[near.node]);
   const Pose2<double> moved = compose(Pose2<double>(at_node[0], at_node[1], at_node[2]),
                                       se2_exp<double>(motion_from_node(nodes, near).way));
-  return moved.position + rotate(moved.heading, fix.antenna_m);
+  return moved.position + rotate(moved.heading, fix.antenna_seen_m());
 }
 
 std::vector<KnownState> Window::open_states() const {
