@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -13,6 +14,7 @@
 #include <waymark/core/linear/block_symbolic.hpp>
 #include <waymark/core/robust/chi_square.hpp>
 #include <waymark/core/robust/detail/moved_errors.hpp>
+#include <waymark/core/robust/detail/ways.hpp>
 #include <waymark/core/robust/detail/wrong_places.hpp>
 #include <waymark/core/robust/graduation.hpp>
 #include <waymark/core/system/gauge.hpp>
@@ -88,16 +90,24 @@ class Graduation {
   std::vector<EdgePlace> kept_and_trusted() const;
   std::vector<EdgePlace> unconfirmed() const;
   bool doubt_trusted();
+  bool doubt_for_agreeing();
+  bool doubt_ways(const Verdict& verdict);
+  bool doubt_all(const std::vector<EdgePlace>& doubted, std::vector<EdgePlace> outliers,
+                 const Verdict& verdict);
   bool is_dense() const;
   bool may_be_grown(const Graph& trusted) const;
-  bool is_implausible() const;
+  bool is_implausible(const Verdict& verdict) const;
   bool ends_badly(double share) const;
   bool outliers_agree(double share) const;
+  std::vector<EdgePlace> agreeing_outliers() const;
   double cost(const Verdict& verdict);
   double cost_by_edges(const Verdict& verdict) const;
   void doubt();
   void doubt_best();
   double bound(EdgePlace place) const;
+  bool is_trusted(EdgePlace place) const {
+    return std::binary_search(of_rule_.begin(), of_rule_.end(), place);
+  }
   double price(EdgePlace place) const;
   std::vector<EdgePlace> beyond_bound() const;
   std::vector<EdgePlace> inside(const Verdict& verdict) const;
@@ -109,6 +119,8 @@ class Graduation {
   void cross_examine();
   Verdict optimize_without(std::vector<EdgePlace> outliers);
   std::vector<EdgePlace> most_accused(std::span<const EdgePlace> edges, const Verdict& verdict);
+  std::vector<std::pair<double, EdgePlace>> accusations(std::span<const EdgePlace> edges,
+                                                        const Verdict& verdict);
   std::vector<EdgePlace> joining(std::span<const EdgePlace> outside, const Graph& kept) const;
   std::vector<EdgePlace> without_joining(const std::vector<EdgePlace>& outside) const;
   std::vector<EdgePlace> still_out(const Verdict& verdict, std::vector<EdgePlace>& returned);
@@ -123,7 +135,8 @@ class Graduation {
   Algorithm& algorithm_;
   LinearSolver& solver_;
   const GraduationOptions& options_;
-  std::map<int, double> bounds_;  // of squared errors, by dimension
+  std::map<int, double> bounds_;    // of squared errors, by dimension
+  std::vector<EdgePlace> of_rule_;  // what the rule trusts, doubted or not
   std::vector<EdgePlace> candidates_;
   std::vector<EdgePlace> trusted_;                 // the other ones
   std::vector<std::vector<EdgePlace>> parallels_;  // groups of candidates that would be trusted alone
@@ -137,10 +150,12 @@ class Graduation {
 };
 
 void Graduation::find_candidates() {
+  of_rule_ = options_.trusted(graph_);
+  result_.trusted = of_rule_.size();
   for (std::size_t b = 0; b < graph_.batch_count(); ++b) {
     result_.weights.emplace_back(graph_.batch(b).size(), 1.0);
     for (std::size_t e = 0; e < graph_.batch(b).size(); ++e) {
-      (options_.trusted(graph_, {b, e}) ? trusted_ : candidates_).push_back({b, e});
+      (is_trusted({b, e}) ? trusted_ : candidates_).push_back({b, e});
       const auto [bound, is_new] = bounds_.try_emplace(graph_.batch(b).error_dimension(e));
       if (is_new) bound->second = chi_square_quantile(options_.inlier_probability, bound->first);
     }
@@ -169,15 +184,15 @@ double Graduation::bound(EdgePlace place) const {
 // edge of this tail explain the contradiction alike.
 double Graduation::price(EdgePlace place) const {
   constexpr double kOfTrusted = 2;
-  return (options_.trusted(graph_, place) ? kOfTrusted : 1.0) * bound(place);
+  return (is_trusted(place) ? kOfTrusted : 1.0) * bound(place);
 }
 
 // A trusted edge is against whole places, not against each of their closures.
 // @param verdict whose values are those of the graph
 double Graduation::cost(const Verdict& verdict) {
   std::vector<EdgePlace> outliers = verdict.outliers;
-  const auto closures = std::stable_partition(
-      outliers.begin(), outliers.end(), [&](EdgePlace place) { return options_.trusted(graph_, place); });
+  const auto closures = std::stable_partition(outliers.begin(), outliers.end(),
+                                              [&](EdgePlace place) { return is_trusted(place); });
   double result = verdict.summary.final_chi2;
   for (auto place = outliers.begin(); place != closures; ++place) result += price(*place);
   return result + wrong_places_->price(graph_, std::span(closures, outliers.end()));
@@ -261,7 +276,7 @@ void Graduation::apart(Search search) {
 
 // Tells whether another search may find better. @param share of the candidates that may be outside
 bool Graduation::ends_badly(double share) const {
-  return !interrupted_ && !dense_ && (best_.values.empty() || is_implausible() || outliers_agree(share));
+  return !interrupted_ && !dense_ && (best_.values.empty() || is_implausible(best_) || outliers_agree(share));
 }
 
 // Tells whether all edges fill the factor so much that each step would take many seconds. False closures do,
@@ -293,11 +308,15 @@ bool Graduation::outliers_agree(double share) const {
     return graph_.batch(place.batch).vertices(place.edge).size() == 2;
   });
   if (!are_pairs) return true;  // what they want is not compared
+  return static_cast<double>(agreeing_outliers().size()) >= kFewOutliers;
+}
+
+// Returns the most of the outliers that want the same.
+std::vector<EdgePlace> Graduation::agreeing_outliers() const {
   Graph at_best = graph_;
   at_best.set_values(best_.values);
   const double wide = 4 * chi_square_quantile(options_.inlier_probability, 3);
-  return static_cast<double>(detail::most_that_agree(std::move(at_best), best_.outliers, wide)) >=
-         kFewOutliers;
+  return detail::most_that_agree(std::move(at_best), best_.outliers, wide);
 }
 
 // Returns the outliers that remain if those that agree with the rest return, a share of them at a time. Those
@@ -392,8 +411,7 @@ Verdict Graduation::optimize_without(std::vector<EdgePlace> outliers) {
 // Returns the edges without which a split falls apart, although nothing contradicts them; trusted ones are preferred.
 std::vector<EdgePlace> Graduation::joining(std::span<const EdgePlace> outside, const Graph& kept) const {
   std::vector<EdgePlace> edges(outside.begin(), outside.end());
-  std::stable_partition(edges.begin(), edges.end(),
-                        [&](EdgePlace place) { return options_.trusted(graph_, place); });
+  std::stable_partition(edges.begin(), edges.end(), [&](EdgePlace place) { return is_trusted(place); });
   std::vector<EdgePlace> result = joining_edges(graph_, edges, kept);
   std::sort(result.begin(), result.end());
   return result;
@@ -407,8 +425,8 @@ std::vector<EdgePlace> Graduation::without_joining(const std::vector<EdgePlace>&
 }
 
 // Returns the edges that are outside after this minimum. Edges inside that exceed the bound go out.
-// Edges outside that join what falls apart, or whose innovation is within the bound, come in, each of them once; the
-// other ones would raise the minimum by more than they cost outside.
+// Edges outside whose innovation is within the bound come in, each of them once; the other ones would raise the
+// minimum by more than they cost outside. Those that join what falls apart raise nothing, and come in whenever they do.
 std::vector<EdgePlace> Graduation::still_out(const Verdict& verdict, std::vector<EdgePlace>& returned) {
   const Graph kept = without_edges(graph_, verdict.outliers);
   const std::vector<Innovation> innovation = innovations(graph_, verdict.outliers, Membership::outside, kept);
@@ -418,11 +436,10 @@ std::vector<EdgePlace> Graduation::still_out(const Verdict& verdict, std::vector
     const EdgePlace place = verdict.outliers[i];
     const auto known = std::lower_bound(returned.begin(), returned.end(), place);
     const bool was_back = known != returned.end() && *known == place;
-    const bool comes_in =
-        innovation[i].squared <= price(place) || std::binary_search(joins.begin(), joins.end(), place);
-    if (was_back || !comes_in) {
+    const bool agrees = !was_back && innovation[i].squared <= price(place);
+    if (!agrees && !std::binary_search(joins.begin(), joins.end(), place)) {
       out.push_back(place);
-    } else {
+    } else if (!was_back) {
       returned.insert(known, place);
     }
   }
@@ -437,14 +454,25 @@ std::vector<EdgePlace> Graduation::still_out(const Verdict& verdict, std::vector
 // fall by more than it costs outside. A false edge makes good neighbours look bad, so only those close
 // to the worst are returned.
 std::vector<EdgePlace> Graduation::most_accused(std::span<const EdgePlace> members, const Verdict& verdict) {
+  std::vector<EdgePlace> result;
+  for (const auto& [gain, place] : accusations(members, verdict)) result.push_back(place);
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+// Returns the same, the worst first, with what the minimum would fall by.
+std::vector<std::pair<double, EdgePlace>> Graduation::accusations(std::span<const EdgePlace> members,
+                                                                  const Verdict& verdict) {
   const Graph kept = without_edges(graph_, verdict.outliers);
   const std::vector<Innovation> against = innovations(graph_, members, Membership::inside, kept);
   double worst = 0;
   for (const Innovation& innovation : against) worst = std::max(worst, innovation.squared);
-  std::vector<EdgePlace> result;
+  std::vector<std::pair<double, EdgePlace>> result;
   for (std::size_t i = 0; i < members.size(); ++i) {
-    if (against[i].squared > std::max(bound(members[i]), 0.5 * worst)) result.push_back(members[i]);
+    if (against[i].squared > std::max(bound(members[i]), 0.5 * worst))
+      result.emplace_back(against[i].squared, members[i]);
   }
+  std::sort(result.begin(), result.end(), std::greater<>());
   return result;
 }
 
@@ -525,7 +553,7 @@ std::vector<EdgePlace> Graduation::contradicted(std::span<const EdgePlace> trust
 std::vector<EdgePlace> Graduation::kept_and_trusted() const {
   std::vector<EdgePlace> result = trusted_;
   for (const EdgePlace place : inside(best_)) {
-    if (options_.trusted(graph_, place)) result.push_back(place);
+    if (is_trusted(place)) result.push_back(place);
   }
   std::sort(result.begin(), result.end());
   return result;
@@ -552,19 +580,73 @@ std::vector<EdgePlace> Graduation::unconfirmed() const {
   return result;
 }
 
-// Makes candidates of the trusted edges that the best split contradicts most.
+// Makes candidates of the trusted edges that the best split contradicts most. A wrong edge may bend the rest so
+// that its own error is small. If chi2 or closures outside tell that something may be wrong, all are asked what it
+// costs to keep them.
 // @return there is a cheaper split now
 bool Graduation::doubt_trusted() {
   graph_.set_values(best_.values);
-  std::vector<EdgePlace> outliers = most_accused(contradicted(trusted_), best_);
+  const std::vector<EdgePlace> accused = most_accused(contradicted(trusted_), best_);
+  if (doubt_all(accused, accused, best_)) return true;
+  graph_.set_values(best_.values);
+  const bool are_closures_out =
+      std::any_of(best_.outliers.begin(), best_.outliers.end(), [&](EdgePlace place) {
+        return !is_trusted(place) && graph_.batch(place.batch).vertices(place.edge).size() == 2;
+      });
+  if (!are_closures_out && !is_implausible(best_)) return false;
+  return doubt_ways(best_);
+}
+
+// Doubts the trusted edges on those ways that the others contradict most: one edge of the worst way, as good as
+// any other of it, because without several ways at once nothing contradicts any of them, and then all.
+// @return there is a cheaper split now
+bool Graduation::doubt_ways(const Verdict& verdict) {
+  const std::vector<std::vector<EdgePlace>> ways = detail::by_way(graph_, trusted_, verdict.outliers);
+  std::map<EdgePlace, std::size_t> way_of;  // by its first edge
+  std::vector<EdgePlace> first;
+  for (const std::vector<EdgePlace>& way : ways) {
+    way_of[way.front()] = first.size();
+    first.push_back(way.front());
+  }
+  std::vector<EdgePlace> accused;
+  for (const auto& [gain, place] : accusations(first, verdict)) {
+    const std::vector<EdgePlace>& way = ways[way_of[place]];
+    if (accused.empty() && doubt_all(way, {place}, verdict)) return true;
+    accused.insert(accused.end(), way.begin(), way.end());
+  }
+  std::sort(accused.begin(), accused.end());
+  return doubt_all(accused, accused, verdict);
+}
+
+// Makes candidates of trusted edges if a split without some of them is cheaper. @return it is
+bool Graduation::doubt_all(const std::vector<EdgePlace>& doubted, std::vector<EdgePlace> outliers,
+                           const Verdict& verdict) {
   if (outliers.empty() || interrupted_) return false;
-  move_to_candidates(outliers);
-  outliers.insert(outliers.end(), best_.outliers.begin(), best_.outliers.end());
+  const auto [trusted_before, candidates_before] = std::pair(trusted_, candidates_);
+  move_to_candidates(doubted);
+  outliers.insert(outliers.end(), verdict.outliers.begin(), verdict.outliers.end());
   std::sort(outliers.begin(), outliers.end());
   const double before = best_.cost;
   judge(std::move(outliers));
   graph_.set_values(best_.values);
-  return best_.cost < before;
+  if (best_.cost < before) return true;
+  trusted_ = trusted_before;
+  candidates_ = candidates_before;
+  return false;
+}
+
+// Lets the outliers that want the same return, and doubts the trusted edges that they accuse. Nothing else shows an
+// edge that is wrong by so little that it costs less than its price once they are out.
+// @return there is a cheaper split now
+bool Graduation::doubt_for_agreeing() {
+  const std::vector<EdgePlace> agreeing = agreeing_outliers();
+  if (static_cast<double>(agreeing.size()) < kFewOutliers || interrupted_) return false;
+  std::vector<EdgePlace> outside;
+  std::set_difference(best_.outliers.begin(), best_.outliers.end(), agreeing.begin(), agreeing.end(),
+                      std::back_inserter(outside));
+  graph_.set_values(best_.values);
+  const Verdict verdict = optimize_without(std::move(outside));
+  return doubt_ways(verdict);
 }
 
 void Graduation::doubt() {
@@ -583,13 +665,13 @@ void Graduation::doubt_best() {
   });
 }
 
-// Tells whether the kept edges contradict each other, by chi2 of the best split.
-bool Graduation::is_implausible() const {
-  std::int64_t freedom = -best_.summary.unknowns;
+// Tells whether the kept edges contradict each other, by chi2 of a split.
+bool Graduation::is_implausible(const Verdict& verdict) const {
+  std::int64_t freedom = -verdict.summary.unknowns;
   for (const EdgePlace place : trusted_) freedom += graph_.batch(place.batch).error_dimension(place.edge);
-  for (const EdgePlace place : inside(best_))
+  for (const EdgePlace place : inside(verdict))
     freedom += graph_.batch(place.batch).error_dimension(place.edge);
-  return freedom > 0 && chi_square_tail(best_.summary.final_chi2, static_cast<int>(freedom)) <
+  return freedom > 0 && chi_square_tail(verdict.summary.final_chi2, static_cast<int>(freedom)) <
                             1 - options_.inlier_probability;
 }
 
@@ -598,18 +680,24 @@ GraduationResult Graduation::run() {
   options_.check();
   find_candidates();
   dense_ = is_dense();
+  Verdict with_all;
   // 1. Use all edges. If none is beyond its bound, there are no outliers. With outliers this
   //    minimum may be far away; the next step need not start exactly from it.
   if (!dense_) {
     OptimizerOptions first = options_.optimizer;
     first.max_iterations = std::min(kFirstIterations, first.max_iterations);
-    (void)count(optimize(graph_, algorithm_, solver_, first));
+    with_all.summary = count(optimize(graph_, algorithm_, solver_, first));
   }
   const std::vector<double> of_all_edges = graph_.values();
-  const bool suspicious = dense_ || !beyond_bound().empty() || !contradicted(trusted_).empty();
+  const bool hidden = !dense_ && beyond_bound().empty() && contradicted(trusted_).empty();
+  const bool suspicious = !hidden || is_implausible(with_all);
   // 2. Grow a split from what is trusted. If that does not end well, narrow the loss, from the minimum of all edges
   //    and from that of the trusted ones.
   if (suspicious) {
+    if (hidden) {
+      judge({});
+      cross_examine();
+    }
     from_trusted([&](std::vector<EdgePlace> out) {
       std::optional<std::vector<EdgePlace>> grown = grown_from(std::move(out));
       if (!grown) return;
@@ -634,7 +722,18 @@ GraduationResult Graduation::run() {
     best_.cost = cost(best_);
   }
   // 3. Doubt what was trusted: single edges, and all of them if they cost many of the others.
-  if (suspicious && options_.doubts_trusted) doubt_best();
+  if (suspicious && options_.doubts_trusted) {
+    doubt_best();
+    if (hidden) {
+      apart([&] {
+        graph_.set_values(of_all_edges);
+        best_ = optimize_without({});
+        best_.cost = cost(best_);
+        doubt();
+      });
+    }
+    for (int round = 0; round < kMaxDoubts && doubt_for_agreeing(); ++round) doubt();
+  }
   if (!interrupted_ && !dense_ && options_.doubts_trusted && suspicious && outliers_agree(kManyOutliers)) {
     graph_.set_values(of_all_edges);
     std::vector<EdgePlace> all = trusted_;
@@ -653,7 +752,7 @@ GraduationResult Graduation::run() {
   result_.unconfirmed = unconfirmed();
   result_.outliers = std::move(best_.outliers);
   std::copy_if(result_.outliers.begin(), result_.outliers.end(), std::back_inserter(result_.distrusted),
-               [&](EdgePlace place) { return options_.trusted(graph_, place); });
+               [&](EdgePlace place) { return is_trusted(place); });
   result_.summary = std::move(best_.summary);
   if (interrupted_) {
     result_.summary.termination = Termination::interrupted;

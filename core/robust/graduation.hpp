@@ -22,7 +22,9 @@
 /// Trust is no certainty. Trusted edges that contradict each other between the same two places are
 /// candidates from the beginning. So are those that the best split contradicts (their error is beyond
 /// the quantile, widened if the errors of the trusted edges are larger than stated as a whole), if it
-/// becomes cheaper without them.
+/// becomes cheaper without them. A wrong edge whose error a long way shares has no large error itself. If
+/// chi2 is larger than noise makes it, or closures are outside, the trusted edges are therefore asked by how much
+/// the minimum would fall without them, and asked again with those outliers inside that agree on one motion.
 ///
 /// The first split is grown from the trusted edges: those candidates return that agree with the rest, a few at
 /// a time, and first those whose place the rest knows best. That takes a small part of the time of narrowing,
@@ -42,13 +44,14 @@
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/robust/edge_selection.hpp>
 #include <waymark/core/robust/joining_edges.hpp>
+#include <waymark/core/robust/odometry_edges.hpp>
 #include <waymark/core/robust/trust.hpp>
 
 namespace WAYMARK_EXPORT waymark {
 
 struct GraduationOptions {
   Loss loss;  ///< loss of the candidates at its final width. Default: Geman-McClure, 1
-  TrustRule trusted = &is_odometry_edge;  ///< all others are candidates from the beginning
+  TrustRule trusted = &odometry_edges;  ///< all others are candidates from the beginning
   /// trusted edges may become candidates, as above; false: they stay, and those that are contradicted are told only
   bool doubts_trusted = true;
   double factor = 1.4;       ///< divisor of the stretch per round, > 1
@@ -73,8 +76,9 @@ struct GraduationResult {
   std::vector<EdgePlace> unconfirmed;
   /// Per batch and edge: the weight from the loss at its final width; 1 for trusted edges.
   std::vector<std::vector<double>> weights;
-  std::size_t candidates = 0;
-  /// rounds of narrowing; 0: no edge was beyond its quantile, or what was grown from the trusted edges fits
+  std::size_t trusted = 0;     ///< edges that the rule trusts
+  std::size_t candidates = 0;  ///< edges that may be outliers, at last
+  /// rounds of narrowing; 0: all edges fit, or what was grown from the trusted edges does
   int rounds = 0;
   int passes = 0;      ///< splits whose minimum was computed
   int iterations = 0;  ///< steps of all optimisations

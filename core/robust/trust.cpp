@@ -10,10 +10,6 @@ namespace {
 
 using Pair = std::pair<VertexIndex, VertexIndex>;
 
-bool follow_each_other(VertexId a, VertexId b) {
-  return to_number(a) + 1 == to_number(b) || to_number(b) + 1 == to_number(a);
-}
-
 std::vector<VertexIndex> placed_vertices(const Graph& graph, EdgePlace place) {
   std::vector<VertexIndex> placed;
   for (const VertexIndex v : graph.batch(place.batch).vertices(place.edge)) {
@@ -59,14 +55,14 @@ bool contradict(const Graph& graph, std::span<const EdgePlace> edges, const Pair
 
 }  // namespace
 
-bool is_odometry_edge(const Graph& graph, EdgePlace place) {
-  if (graph.edge_type(place.batch).arity == EdgeType::kRuntimeArity) return true;
-  const std::vector<VertexIndex> placed = placed_vertices(graph, place);
-  if (placed.size() != 2 || graph.fixed(placed[0]) || graph.fixed(placed[1])) return false;
-  const VertexType& type = graph.vertex_type(placed[0]);
-  return type.tag == graph.vertex_type(placed[1]).tag &&
-         graph.batch(place.batch).error_dimension(place.edge) >= type.tangent_size &&
-         follow_each_other(graph.id(placed[0]), graph.id(placed[1]));
+TrustRule trust_each(std::function<bool(const Graph&, EdgePlace)> is_trusted) {
+  return [is_trusted = std::move(is_trusted)](const Graph& graph) {
+    std::vector<EdgePlace> result;
+    for (std::size_t b = 0; b < graph.batch_count(); ++b)
+      for (std::size_t e = 0; e < graph.batch(b).size(); ++e)
+        if (is_trusted(graph, {b, e})) result.push_back({b, e});
+    return result;
+  };
 }
 
 std::vector<std::vector<EdgePlace>> contradicting_parallels(const Graph& graph,

@@ -12,14 +12,12 @@
 
 namespace WAYMARK_EXPORT waymark {
 
-/// Tells whether an edge is trusted: taken for right as long as the other edges do not contradict it.
-using TrustRule = std::function<bool(const Graph&, EdgePlace)>;
+/// Returns the trusted edges, ascending: those taken for right as long as the other edges do not contradict them.
+/// odometry_edges() is such a rule.
+using TrustRule = std::function<std::vector<EdgePlace>(const Graph&)>;
 
-/// Recognises odometry. The edge joins two free vertices of one type that have a place in the
-/// plane and consecutive ids, and its error determines one from the other (it has as many
-/// dimensions as the tangent). Priors of run-time arity are trusted too, because marginalisation
-/// made them from many edges.
-[[nodiscard]] bool is_odometry_edge(const Graph& graph, EdgePlace place);
+/// Returns a rule that looks at each edge alone.
+[[nodiscard]] TrustRule trust_each(std::function<bool(const Graph&, EdgePlace)> is_trusted);
 
 /// Returns groups of trusted edges that contradict each other between the same two places: odometry and a loop
 /// closure between neighbours. chi2 of a group alone, at its minimum over one of the two, is beyond the

@@ -55,6 +55,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/robust/edge_selection.hpp
   core/robust/graduation.hpp
   core/robust/joining_edges.hpp
+  core/robust/odometry_edges.hpp
   core/robust/trust.hpp
   core/system/foreign_poses.hpp
   core/system/gauge.hpp

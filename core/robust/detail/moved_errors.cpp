@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
-#include <vector>
+#include <iterator>
+#include <optional>
+#include <utility>
 
 #include <waymark/core/robust/detail/moved_errors.hpp>
 #include <waymark/core/robust/edge_selection.hpp>
@@ -19,7 +21,7 @@ double squared_error_after(const EdgeBatchBase& batch, std::size_t edge, Graph& 
   return squared;
 }
 
-std::size_t most_that_agree(Graph graph, std::span<const EdgePlace> edges, double bound) {
+std::vector<EdgePlace> most_that_agree(Graph graph, std::span<const EdgePlace> edges, double bound) {
   constexpr std::size_t kComparisons = 300'000;
   std::vector<EdgePlace> pairs;
   for (const EdgePlace place : edges) {
@@ -29,7 +31,7 @@ std::size_t most_that_agree(Graph graph, std::span<const EdgePlace> edges, doubl
     const std::span<const VertexIndex> ends = graph.batch(place.batch).vertices(place.edge);
     return std::array{graph.id(ends[0]) < graph.id(ends[1]) ? ends[1] : ends[0]};
   };
-  std::size_t most = 0;
+  std::vector<EdgePlace> most;
   const std::size_t stride = 1 + pairs.size() * pairs.size() / kComparisons;
   for (std::size_t i = 0; i < pairs.size(); i += stride) {
     const EdgeBatchBase& batch = graph.batch(pairs[i].batch);
@@ -40,7 +42,9 @@ std::size_t most_that_agree(Graph graph, std::span<const EdgePlace> edges, doubl
       const EdgeBatchBase& other = graph.batch(place.batch);
       return squared_error_after(other, place.edge, graph, later_end(place), *motion) <= bound;
     };
-    most = std::max(most, static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), agrees)));
+    std::vector<EdgePlace> all;
+    std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(all), agrees);
+    if (all.size() > most.size()) most = std::move(all);
   }
   return most;
 }

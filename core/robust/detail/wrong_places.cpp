@@ -7,31 +7,36 @@
 #include <set>
 #include <utility>
 
+#include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/robust/detail/id_order.hpp>
 #include <waymark/core/robust/detail/moved_errors.hpp>
 #include <waymark/core/robust/detail/wrong_places.hpp>
+#include <waymark/core/system/detail/components.hpp>
 #include <waymark/core/system/detail/finite_motion.hpp>
 
 namespace waymark::detail {
 namespace {
 
-/// Ends of two closures in a row are at most so many ids apart.
+/// Ends of two closures in a row are at most so many poses apart, and so are those of an edge of odometry: two
+/// drives whose ids are interleaved have every second one.
 constexpr std::int64_t kGap = 2;
 /// Probability that a false closure is followed by another one of the same mistake.
 constexpr double kGoesOn = 0.7;
 
 /// An edge between two places of a drive.
 struct Closure {
-  std::int64_t earlier;  // ids of its ends
+  std::int64_t earlier;  // places of its ends in the order of ids
   std::int64_t later;
   VertexIndex moved;  // the later one
   EdgePlace place;
 };
 
-Closure closure_of(const Graph& graph, EdgePlace place) {
+/// @param order place of each vertex
+Closure closure_of(const Graph& graph, std::span<const std::int64_t> order, EdgePlace place) {
   const std::span<const VertexIndex> ends = graph.batch(place.batch).vertices(place.edge);
-  const std::int64_t first = to_number(graph.id(ends[0]));
-  const std::int64_t second = to_number(graph.id(ends[1]));
+  const std::int64_t first = order[at(ends[0])];
+  const std::int64_t second = order[at(ends[1])];
   if (first < second) return {first, second, ends[1], place};
   return {second, first, ends[0], place};
 }
@@ -49,8 +54,8 @@ double squared_error_at(const FiniteMotion& motion, const Closure& closure, Grap
 /// Closures in the order of their earlier ends, of which groups are taken out.
 class Closures {
  public:
-  Closures(const Graph& graph, std::span<const EdgePlace> edges) {
-    for (const EdgePlace place : edges) closures_.push_back(closure_of(graph, place));
+  Closures(const Graph& graph, std::span<const std::int64_t> order, std::span<const EdgePlace> edges) {
+    for (const EdgePlace place : edges) closures_.push_back(closure_of(graph, order, place));
     std::sort(closures_.begin(), closures_.end(), [](const Closure& a, const Closure& b) {
       return std::pair(a.earlier, a.later) < std::pair(b.earlier, b.later);
     });
@@ -102,10 +107,9 @@ class Closures {
 /// A graph of a group of closures and of the two ways that they join. A vertex on both ways is there twice.
 class TwoWays {
  public:
-  void add_closure(const Graph& from, EdgePlace place) {
-    const VertexIndex moved = closure_of(from, place).moved;
-    add(from, place, [&](VertexIndex v) { return v == moved; });
-    if (first_moved_ < 0) first_moved_ = copies_.at({true, moved});
+  void add_closure(const Graph& from, const Closure& closure) {
+    add(from, closure.place, [&](VertexIndex v) { return v == closure.moved; });
+    moved_.push_back(copies_.at({true, closure.moved}));
   }
 
   void add_odometry(const Graph& from, EdgePlace place, bool later) {
@@ -115,10 +119,17 @@ class TwoWays {
   /// Moves the later way to where the first closure wants it.
   void bring_together() {
     const std::optional<FiniteMotion> motion =
-        motion_to_agree(graph_.batch(0), 0, graph_, std::array{first_moved_});
+        motion_to_agree(graph_.batch(0), 0, graph_, std::array{moved_.front()});
     if (!motion) return;
     for (const auto& [of, copy] : copies_)
       if (of.first) move(graph_, copy, *motion);
+  }
+
+  /// Tells whether the ways join all closures. Others would be compared with nothing.
+  [[nodiscard]] bool is_whole() const {
+    const std::vector<std::int32_t> component = find_components(graph_);
+    return std::all_of(moved_.begin(), moved_.end(),
+                       [&](VertexIndex v) { return component[at(v)] == component[at(moved_.front())]; });
   }
 
   [[nodiscard]] Graph& graph() { return graph_; }
@@ -141,26 +152,26 @@ class TwoWays {
 
   Graph graph_;
   std::map<std::pair<bool, VertexIndex>, VertexIndex> copies_;  // of those of the earlier and the later way
-  VertexIndex first_moved_ = -1;
+  std::vector<VertexIndex> moved_;                              // later ends of the closures
 };
 
 }  // namespace
 
 WrongPlaces::WrongPlaces(const Graph& graph, std::span<const EdgePlace> odometry, Algorithm& algorithm,
                          LinearSolver& solver, std::function<double(EdgePlace)> price)
-    : algorithm_(algorithm), solver_(solver), price_(std::move(price)) {
+    : algorithm_(algorithm), solver_(solver), price_(std::move(price)), order_(places_by_id(graph)) {
   for (const EdgePlace place : odometry) {
     if (graph.batch(place.batch).vertices(place.edge).size() != 2) continue;
-    const Closure ends = closure_of(graph, place);
-    if (ends.later == ends.earlier + 1) odometry_.emplace(ends.earlier, place);
+    const Closure ends = closure_of(graph, order_, place);
+    if (ends.later - ends.earlier <= kGap) odometry_.emplace(ends.earlier, place);
   }
 }
 
-double WrongPlaces::price(Graph& at, std::span<const EdgePlace> edges) {
+double WrongPlaces::price(Graph& values_of, std::span<const EdgePlace> edges) {
   double result = 0;
   std::vector<EdgePlace> pairs;
   for (const EdgePlace place : edges) {
-    if (at.batch(place.batch).vertices(place.edge).size() == 2)
+    if (values_of.batch(place.batch).vertices(place.edge).size() == 2)
       pairs.push_back(place);
     else
       result += price_(place);
@@ -168,48 +179,51 @@ double WrongPlaces::price(Graph& at, std::span<const EdgePlace> edges) {
   const Closure* asked = nullptr;
   std::optional<FiniteMotion> motion;
   const auto agree = [&](const Closure& one, const Closure& other) {
-    if (asked != &one) motion = motion_wanted_by(one, at);
+    if (asked != &one) motion = motion_wanted_by(one, values_of);
     asked = &one;
     if (!motion) return false;
-    if (squared_error_at(*motion, other, at) <= price_(other.place))
+    if (squared_error_at(*motion, other, values_of) <= price_(other.place))
       return true;  // whatever the odometry's noise
     std::vector<EdgePlace> both{one.place, other.place};
     std::sort(both.begin(), both.end());
-    return chi2_alone(at, both) <= price_(other.place);
+    return chi2_alone(values_of, both) <= price_(other.place);
   };
-  Closures closures(at, pairs);
+  Closures closures(values_of, order_, pairs);
   for (std::vector<EdgePlace> group; !(group = closures.take_group(agree)).empty();)
-    result += group.size() == 1 ? price_(group[0]) : price_of_group(at, group);
+    result += group.size() == 1 ? price_(group[0]) : price_of_group(values_of, group);
   return result;
 }
 
-double WrongPlaces::price_of_group(const Graph& at, const std::vector<EdgePlace>& group) {
+double WrongPlaces::price_of_group(const Graph& values_of, const std::vector<EdgePlace>& group) {
   double apart = 0;
   for (const EdgePlace place : group) apart += price_(place);
   const double goes_on = -2 * std::log(kGoesOn) * static_cast<double>(group.size() - 1);
-  return std::min(apart, price_(group[0]) + chi2_alone(at, group) + goes_on);
+  return std::min(apart, price_(group[0]) + chi2_alone(values_of, group) + goes_on);
 }
 
-double WrongPlaces::chi2_alone(const Graph& at, const std::vector<EdgePlace>& group) {
+double WrongPlaces::chi2_alone(const Graph& values_of, const std::vector<EdgePlace>& group) {
   const auto [known, is_new] = known_.try_emplace(group, 0);
-  if (is_new) known->second = computed_chi2(at, group);
+  if (is_new) known->second = computed_chi2(values_of, group);
   return known->second;
 }
 
-double WrongPlaces::computed_chi2(const Graph& at, const std::vector<EdgePlace>& group) const {
+double WrongPlaces::computed_chi2(const Graph& values_of, const std::vector<EdgePlace>& group) const {
   TwoWays ways;
   std::set<std::int64_t> ends[2];
   for (const EdgePlace place : group) {
-    const Closure closure = closure_of(at, place);
+    const Closure closure = closure_of(values_of, order_, place);
     ends[0].insert(closure.earlier);
     ends[1].insert(closure.later);
-    ways.add_closure(at, place);
+    ways.add_closure(values_of, closure);
   }
   for (const bool later : {false, true}) {
     const auto last = odometry_.lower_bound(*ends[later].rbegin());
-    for (auto edge = odometry_.lower_bound(*ends[later].begin()); edge != last; ++edge)
-      ways.add_odometry(at, edge->second, later);
+    for (auto edge = odometry_.lower_bound(*ends[later].begin()); edge != last; ++edge) {
+      if (closure_of(values_of, order_, edge->second).later <= *ends[later].rbegin())
+        ways.add_odometry(values_of, edge->second, later);
+    }
   }
+  if (!ways.is_whole()) return std::numeric_limits<double>::infinity();
   ways.bring_together();
   try {
     return optimize(ways.graph(), algorithm_, solver_, {}).final_chi2;

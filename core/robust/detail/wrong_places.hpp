@@ -21,26 +21,28 @@ namespace waymark::detail {
 /// that a mistake goes on. The chi2 is the same inside and outside, so that only the contradiction to the
 /// rest decides.
 ///
-/// Two edges of a group have ends at most two ids apart, and their chi2 alone is within the price of one, or
-/// a chain of such edges leads from one to the other. Edges of other than two vertices are alone.
+/// Two edges of a group have ends at most two poses apart by the order of ids, and their chi2 alone is within the
+/// price of one, or a chain of such edges leads from one to the other. Without odometry between their ends nothing
+/// tells that they are one mistake. Edges of other than two vertices are alone.
 class WrongPlaces {
  public:
   /// @param odometry the edges along the ways @param price of an edge alone
   WrongPlaces(const Graph& graph, std::span<const EdgePlace> odometry, Algorithm& algorithm,
               LinearSolver& solver, std::function<double(EdgePlace)> price);
 
-  /// @param at the graph, at values at which ways are right over a few poses; it gets them back
-  [[nodiscard]] double price(Graph& at, std::span<const EdgePlace> edges);
+  /// @param values_of the graph, at values at which ways are right over a few poses; it gets them back
+  [[nodiscard]] double price(Graph& values_of, std::span<const EdgePlace> edges);
 
  private:
-  [[nodiscard]] double price_of_group(const Graph& at, const std::vector<EdgePlace>& group);
-  [[nodiscard]] double chi2_alone(const Graph& at, const std::vector<EdgePlace>& group);
-  [[nodiscard]] double computed_chi2(const Graph& at, const std::vector<EdgePlace>& group) const;
+  [[nodiscard]] double price_of_group(const Graph& values_of, const std::vector<EdgePlace>& group);
+  [[nodiscard]] double chi2_alone(const Graph& values_of, const std::vector<EdgePlace>& group);
+  [[nodiscard]] double computed_chi2(const Graph& values_of, const std::vector<EdgePlace>& group) const;
 
   Algorithm& algorithm_;
   LinearSolver& solver_;
   std::function<double(EdgePlace)> price_;
-  std::multimap<std::int64_t, EdgePlace> odometry_;  // by the smaller id; the other one follows it
+  std::vector<std::int64_t> order_;                  // place of each vertex
+  std::multimap<std::int64_t, EdgePlace> odometry_;  // by the place of the earlier end
   std::map<std::vector<EdgePlace>, double> known_;   // chi2 alone: it hardly depends on the values
 };
 

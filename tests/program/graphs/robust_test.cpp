@@ -70,6 +70,24 @@ TEST_CASE("robust: who is trusted is the user's choice") {
   CHECK(contains(all.out, "outliers    0 of 0 edges"));
 }
 
+TEST_CASE("robust: where no chain follows the ids, nothing is trusted, and the remedy is told") {
+  const std::string folder = fresh_folder();
+  std::string text = "GRAPH 1\n";
+  constexpr int kPoses = 60;
+  const auto id = [](int i) { return std::to_string(i * 17 % kPoses); };  // neighbours are 17 apart
+  for (int i = 0; i < kPoses; ++i) text += "VERTEX_SE2 " + id(i) + " " + std::to_string(i) + " 0 0\n";
+  for (int i = 0; i + 1 < kPoses; ++i)
+    text += "EDGE_SE2 " + id(i) + " " + id(i + 1) + " 1 0 0 100 0 0 100 0 1000\n";
+  const std::string input = write_text(folder + "a.graph", text);
+  const RunResult result = run({"optimize", input, "-o", folder + "b.graph", "--robust", "gnc"});
+  CHECK(contains(result.out, " of 59 edges that are not trusted"));
+  CHECK(contains(result.err, "no edge is trusted as odometry"));
+  CHECK(contains(result.err, "--trusted TAG"));
+  const RunResult none =
+      run({"optimize", input, "-o", folder + "b.graph", "--robust", "gnc", "--trusted", "none"});
+  CHECK_FALSE(contains(none.err, "no edge is trusted"));
+}
+
 TEST_CASE("robust: losses are given to the edges that are not trusted, and written") {
   const std::string folder = fresh_folder();
   const std::string input = write_text(folder + "a.graph", chain_with_a_false_closure());

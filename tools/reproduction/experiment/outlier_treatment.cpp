@@ -14,9 +14,8 @@ Graduated graduate_fixes(Graph& graph, const Setting& setting, const TypeRegistr
   const Minimizer search = [&graduated](Graph& of, Algorithm& algorithm, LinearSolver& solver,
                                         const OptimizerOptions& rules) {
     GraduationOptions options;
-    options.trusted = [](const Graph& in, EdgePlace place) {
-      return in.edge_type(place.batch).form != "position";
-    };
+    options.trusted = trust_each(
+        [](const Graph& in, EdgePlace place) { return in.edge_type(place.batch).form != "position"; });
     options.optimizer = rules;
     GraduationResult found = graduate(of, algorithm, solver, options);
     of = without_edges(of, found.outliers);

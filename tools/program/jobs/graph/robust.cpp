@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 
 #include <fmt/format.h>
@@ -39,11 +40,11 @@ LossRequest parse_loss(const std::string& text, const TypeRegistry& registry) {
 }
 
 TrustRule trust_rule(const RobustChoice& choice) {
-  if (choice.trusted == "odometry") return &is_odometry_edge;
-  if (choice.trusted == "none") return [](const Graph&, EdgePlace) { return false; };
-  return [tag = choice.trusted](const Graph& graph, EdgePlace place) {
+  if (choice.trusted == "odometry") return &odometry_edges;
+  if (choice.trusted == "none") return [](const Graph&) { return std::vector<EdgePlace>(); };
+  return trust_each([tag = choice.trusted](const Graph& graph, EdgePlace place) {
     return graph.edge_type(place.batch).tag == tag;
-  };
+  });
 }
 
 void describe(const Graph& graph, EdgePlace place, formats::TextBuilder& lines,
@@ -95,10 +96,9 @@ void add_robust_options(CLI::App& command, RobustChoice& choice) {
       ->check(one_of("method", {"none", "gnc"}))
       ->capture_default_str();
   command
-      .add_option(
-          "--trusted", choice.trusted,
-          "Edges that have no loss and are no outliers: odometry (between consecutive ids, unless the "
-          "others contradict it), none, or all edges of a TAG")
+      .add_option("--trusted", choice.trusted,
+                  "Edges that have no loss and are no outliers: odometry (a chain along the ids, unless the "
+                  "others contradict it), none, or all edges of a TAG")
       ->type_name("odometry|none|TAG")
       ->capture_default_str();
   command
@@ -124,13 +124,14 @@ void check_robust(const RobustChoice& choice, const TypeRegistry& registry) {
 
 void attach_losses(Graph& graph, const RobustChoice& choice, const TypeRegistry& registry) {
   if (choice.method != "none") return;
-  const TrustRule trusted = trust_rule(choice);
+  const std::vector<EdgePlace> trusted = trust_rule(choice)(graph);
   for (const std::string& text : choice.losses) {
     const LossRequest request = parse_loss(text, registry);
     for (std::size_t b = 0; b < graph.batch_count(); ++b) {
       if (!request.tag.empty() && graph.edge_type(b).tag != request.tag) continue;
       for (std::size_t e = 0; e < graph.batch(b).size(); ++e) {
-        if (!trusted(graph, {b, e})) graph.batch(b).set_loss(e, request.loss);
+        if (!std::binary_search(trusted.begin(), trusted.end(), EdgePlace{b, e}))
+          graph.batch(b).set_loss(e, request.loss);
       }
     }
   }
@@ -150,6 +151,15 @@ void add_each(const Graph& graph, const std::vector<EdgePlace>& edges, fmt::form
   for (const EdgePlace place : edges) notes.push_back(fmt::format(one, name_of(graph, place)));
 }
 
+/// Tells whether edges join vertices of one type, as odometry does.
+bool joins_like_vertices(const Graph& graph) {
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    const std::vector<std::string>& tags = graph.edge_type(b).vertex_tags;
+    if (graph.batch(b).size() > 0 && tags.size() == 2 && tags[0] == tags[1]) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& registry,
@@ -157,9 +167,10 @@ Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& r
   GraduationOptions options;
   if (!choice.losses.empty()) options.loss = parse_loss(choice.losses.front(), registry).loss;
   options.trusted = trust_rule(choice);
-  options.doubts_trusted = choice.trusted == "odometry";  // a guess, where a tag is the user's word
-  return [options, &found](Graph& graph, Algorithm& algorithm, LinearSolver& solver,
-                           const OptimizerOptions& optimizer) mutable {
+  const bool by_ids = choice.trusted == "odometry";
+  options.doubts_trusted = by_ids;  // a guess, where a tag is the user's word
+  return [options, by_ids, &found](Graph& graph, Algorithm& algorithm, LinearSolver& solver,
+                                   const OptimizerOptions& optimizer) mutable {
     options.optimizer = optimizer;
     found.emplace();
     found->result = graduate(graph, algorithm, solver, options);
@@ -175,6 +186,11 @@ Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& r
         "{} contradicts the other edges and is left out, although it is trusted",
         "{} edges contradict the others and are left out, although they are trusted: {} and others (--outliers lists them)",
         found->notes);
+    if (by_ids && found->result.trusted == 0 && joins_like_vertices(graph))
+      found->notes.push_back(
+          "no edge is trusted as odometry, because no chain of edges follows the ids of the vertices; what is found "
+          "without it is less sure: give ids in the order of the drive, or the edges of the drive a type of their "
+          "own that --trusted TAG names");
     if (const auto& edges = found->result.contradicted; !edges.empty())
       found->notes.push_back(fmt::format(
           "{} trusted edges contradict the other edges, and the result with them: {}{}; --trusted none doubts them",

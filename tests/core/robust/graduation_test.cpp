@@ -1,8 +1,10 @@
 // Graduated non-convexity: false edges are found, good ones stay, and the result is the optimum
 // without them.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -87,6 +89,20 @@ Spoiled spoiled_walk(int count, bool grouped, std::uint64_t seed) {
   return spoiled;
 }
 
+/// Returns the graph with other ids. @param id_of of the vertex with this index
+Graph renumbered(const Graph& graph, const std::function<std::int64_t(int)>& id_of) {
+  Graph result;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v)
+    result.add_vertex(graph.vertex_type(v), VertexId{id_of(v)}, graph.value(v));
+  std::vector<double> fields;
+  for (std::size_t e = 0; e < graph.batch(0).size(); ++e) {
+    fields.clear();
+    graph.batch(0).fields(e, fields);
+    result.add_edge(graph.edge_type(0), graph.batch(0).vertices(e), fields, graph.batch(0).information(e));
+  }
+  return result;
+}
+
 /// Adds false edges.
 void spoil(Spoiled& spoiled, VertexIndex from, VertexIndex to, const Eigen::Vector3d& z,
            const Eigen::Matrix3d& information = pose_information(0.02, 0.005)) {
@@ -119,6 +135,40 @@ Spoiled reckoned_walk(int groups, std::uint64_t seed) {
     for (int i = 0; i < 5; ++i) spoil(spoiled, from + i, to + i, z, pose_information(0.05, 0.015));
   }
   return spoiled;
+}
+
+/// A drive along a circle of 100 poses from its dead reckoning, with noise of 0.05 m and 0.02 rad.
+/// @param wrong motion by which the edge from pose 140 is off
+Graph laps(int poses, std::uint64_t seed, const Pose2<double>& wrong = {}) {
+  std::mt19937_64 random(seed);
+  const Pose2<double> step(1, 0, 2 * std::acos(-1.0) / 100);
+  Graph graph;
+  Pose2<double> pose;
+  for (VertexIndex i = 0; i < poses; ++i) {
+    graph.add_vertex<VertexSe2>(VertexId{i}, {pose.position[0], pose.position[1], wrap_angle(pose.heading)});
+    const Pose2<double> seen = i == 140 ? compose(step, wrong) : step;
+    pose = compose(pose, constant_pose<double>(noisy(seen.vector(), 0.05, 0.02, random)));
+  }
+  for (VertexIndex i = 1; i < poses; ++i) {
+    const Pose2<double> from = graph.value<VertexSe2>(i - 1);
+    const Pose2<double> z = between(from, graph.value<VertexSe2>(i));
+    graph.add_edge(EdgeSe2{{z.position[0], z.position[1], wrap_angle(z.heading)}}, {i - 1, i},
+                   pose_information(0.05, 0.02));
+  }
+  return graph;
+}
+
+/// Two laps with a closure from lap to lap every ten poses.
+Spoiled two_laps(std::uint64_t seed, const Pose2<double>& wrong) {
+  Spoiled result;
+  result.graph = laps(200, seed, wrong);
+  std::mt19937_64 random(seed + 100);
+  for (VertexIndex i = 5; i < 100; i += 10)
+    result.graph.add_edge(EdgeSe2{noisy({0, 0, 0}, 0.05, 0.02, random)}, {i, i + 100},
+                          pose_information(0.05, 0.02));
+  result.false_edges = {{0, 140}};
+  result.without = without_edges(result.graph, result.false_edges);
+  return result;
 }
 
 /// 24 poses along a circle, with noise of 0.02 m and 0.005 rad.
@@ -379,7 +429,8 @@ TEST_CASE(
   spoiled.without = grid_walk(400, 12, 7);
   part(spoiled, 199);  // two drives over the same streets
   spoil(spoiled, 199, 200, {3, -4, 1});
-  CHECK(is_odometry_edge(spoiled.graph, spoiled.false_edges.back()));
+  const std::vector<EdgePlace> trusted = odometry_edges(spoiled.graph);  // ids run on from drive to drive
+  CHECK(std::binary_search(trusted.begin(), trusted.end(), spoiled.false_edges.back()));
   const Score score = graduate_and_score(spoiled, "two walks", registry);
   CHECK(score.precision == 1);
   CHECK(score.recall == 1);
@@ -440,31 +491,55 @@ TEST_CASE("graduation: of false edges that alone join two parts, the one that st
   CHECK(result.unconfirmed.size() == 1);
 }
 
+// Every closure from lap to lap spreads the wrong edge over a hundred poses, so that no error is beyond its quantile.
+TEST_CASE("graduation: wrong odometry is found although no edge has a large error") {
+  const TypeRegistry registry = full_registry();
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    INFO("seed " << seed);
+    const Score score = graduate_and_score(two_laps(seed, {3, 0, 0.6}), "two laps", registry);
+    // Any edge between the closures at poses 135 and 145 explains it.
+    REQUIRE(score.result.outliers.size() == 1);
+    CHECK(score.result.distrusted == score.result.outliers);
+    CHECK(score.result.outliers[0] >= EdgePlace{0, 135});
+    CHECK(score.result.outliers[0] < EdgePlace{0, 145});
+    CHECK(score.chi2_error < 1e-6);
+    CHECK(graduate_and_score(two_laps(seed, {}), "right laps", registry).result.outliers.empty());
+  }
+}
+
+TEST_CASE("graduation: two false closures of a drive without others are left out") {
+  const TypeRegistry registry = full_registry();
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    INFO("seed " << seed);
+    Spoiled drive;
+    drive.without = drive.graph = laps(300, seed);
+    for (const auto& [from, to] : {std::pair(10, 240), std::pair(11, 265)})
+      spoil(drive, from, to, {0, 0, 0}, pose_information(0.05, 0.02));
+    const GraduationResult result = graduate_and_score(drive, "drive", registry).result;
+    CHECK(result.outliers == drive.false_edges);
+    CHECK(result.summary.final_chi2 == Approx(0).margin(1e-6));
+  }
+}
+
+TEST_CASE("graduation: false closures are found whatever steps the ids make") {
+  const TypeRegistry registry = full_registry();
+  for (const bool grouped : {false, true}) {
+    const Spoiled walk = spoiled_walk(60, grouped, 5);
+    const Score consecutive = graduate_and_score(walk, "walk", registry);
+    Spoiled keyframes = walk;
+    keyframes.graph = renumbered(walk.graph, [](int i) { return 5 * i + i % 3; });
+    const Score score = graduate_and_score(keyframes, "walk of keyframes", registry);
+    CHECK(score.recall == 1);
+    CHECK(score.result.outliers == consecutive.result.outliers);
+  }
+}
+
 TEST_CASE("graduation: where no edge is beyond its quantile nothing is done but the optimisation") {
   const TypeRegistry registry = full_registry();
   const Score score = graduate_and_score(spoiled_walk(0, false, 4), "walk", registry);
   CHECK(score.result.rounds == 0);
   CHECK(score.result.outliers.empty());
   CHECK(score.chi2_error < 1e-9);
-}
-
-TEST_CASE("graduation: trusted are edges between consecutive free poses, or what the user says") {
-  const TypeRegistry registry = full_registry();
-  Graph graph;
-  for (int id : {0, 1, 2, 5}) graph.add_vertex<VertexSe2>(VertexId{id}, {double(id), 0, 0});
-  const Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
-  graph.add_edge(EdgeSe2{}, {0, 1}, information);
-  graph.add_edge(EdgeSe2{}, {2, 1}, information);
-  graph.add_edge(EdgeSe2{}, {0, 2}, information);
-  graph.add_edge(EdgeSe2{}, {2, 3}, information);
-  graph.add_edge(EdgeGnssPosition{}, {0, 1}, Eigen::Matrix2d::Identity());
-  CHECK(is_odometry_edge(graph, {0, 0}));
-  CHECK(is_odometry_edge(graph, {0, 1}));
-  CHECK_FALSE(is_odometry_edge(graph, {0, 2}));
-  CHECK_FALSE(is_odometry_edge(graph, {0, 3}));  // neighbours in the file, not by id
-  CHECK_FALSE(is_odometry_edge(graph, {1, 0}));  // does not determine the heading
-  graph.set_fixed(0, true);
-  CHECK_FALSE(is_odometry_edge(graph, {0, 0}));  // absolute, not relative
 }
 
 TEST_CASE("graduation: a wrong option is refused with field, value and rule") {
