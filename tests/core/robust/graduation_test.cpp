@@ -513,7 +513,7 @@ TEST_CASE("graduation: two false closures of a drive without others are left out
     INFO("seed " << seed);
     Spoiled drive;
     drive.without = drive.graph = laps(300, seed);
-    for (const auto& [from, to] : {std::pair(10, 240), std::pair(11, 265)})
+    for (const auto& [from, to] : {std::pair(10, 90), std::pair(11, 160)})
       spoil(drive, from, to, {0, 0, 0}, pose_information(0.05, 0.02));
     const GraduationResult result = graduate_and_score(drive, "drive", registry).result;
     CHECK(result.outliers == drive.false_edges);
