@@ -457,9 +457,11 @@ std::optional<AntennaPlace> Fusion::antenna_beside_slip(const FusionSettings& se
     return there.modeled.noise.cost;
   };
   const std::optional<AntennaPlace> antenna = found_in(freed);
-  if (!antenna || freed.drive == slipping.drive) return antenna;
+  if (freed.drive == slipping.drive) return antenna;
   const std::optional<AntennaPlace> without = found_in(slipping);
-  if (!without || cost_with(slipping, *without) > cost_with(freed, *antenna)) return antenna;
+  if (!without) return antenna;
+  const double cost = antenna ? cost_with(freed, *antenna) : freed.modeled.noise.cost;
+  if (cost_with(slipping, *without) > cost) return antenna;
   freed = slipping;
   return without;
 }
