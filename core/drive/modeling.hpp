@@ -88,8 +88,8 @@ class OdometryModel {
 
 /// The antenna when a fix was measured, if the fix is late by the assumed offset.
 struct FixMoment {
-  /// in the body frame of the pose that Fix::vertex names, m. It is the lever arm, moved by the
-  /// odometry from the stamp of that pose to the moment.
+  /// in the body frame of the pose that Fix::vertex names, m. It is the lever arm, where the receiver has it
+  /// (Fix::antenna_seen_m), moved by the odometry from the stamp of that pose to the moment.
   Eigen::Vector2d antenna = {0, 0};
   /// of the antenna, in the same axes, (grid) m/s
   Eigen::Vector2d velocity = {0, 0};
@@ -127,7 +127,8 @@ struct GnssInput {
   /// pose at its stamp if its assumed offset is 0
   std::span<const Fix> fixes;
   /// One for each fix. A modeling without a time offset may leave them alone: the assumed offset is
-  /// then 0, and FixMoment::antenna is `antenna`. May be empty for such a modeling.
+  /// then 0, and FixMoment::antenna is `antenna`, unless the receiver smooths (Fix::smoothed_m). May be empty for
+  /// such a modeling.
   std::span<const FixMoment> moments;
   /// of the first fix in the body frame, m; all others have it too unless errors are shared
   Eigen::Vector2d antenna = {0, 0};

@@ -28,7 +28,7 @@ constexpr double kLoopShare = 0.02;
 constexpr double kFewLoops = 2;  // times the degrees of freedom are plausible in a graph with fewer
 
 struct Size {
-  std::int64_t unknowns = 0;   ///< scalar
+  std::int64_t unknowns = 0;   ///< scalar, of the gauge of some values; measure() leaves them open
   std::int64_t equations = 0;  ///< scalar
   std::int64_t vertices = 0;   ///< free, with edges
   std::int64_t loops = 0;      ///< edges between free vertices beyond a spanning tree of each part
@@ -47,7 +47,6 @@ std::int64_t unknowns_of(const Graph& graph) {
 
 Size measure(const Graph& graph) {
   Size size;
-  size.unknowns = unknowns_of(graph);
   const std::vector<std::int32_t> part = detail::find_components(graph);
   const std::vector<char> has_edge = vertices_with_edges(graph);
   std::int64_t parts = 0;
@@ -195,6 +194,7 @@ void MultiStart::try_from(std::string_view start, const std::vector<double>& val
 void MultiStart::choose_first() {
   size_ = measure(graph_);
   if (has_many_loops(size_) && !starts_.empty() && options_.max_iterations > 0) {
+    size_.unknowns = unknowns_of(graph_);
     file_chi2_ = graph_.chi2();
     if (!(file_chi2_ <= freedom_of(size_))) {
       const StartType& start = starts_.front().type;
@@ -323,7 +323,9 @@ MultiStartSummary MultiStart::run() {
 }  // namespace
 
 double plausible_chi2(const Graph& graph) {
-  return plausible(measure(graph));
+  Size size = measure(graph);
+  size.unknowns = unknowns_of(graph);
+  return plausible(size);
 }
 
 MultiStartSummary optimize_from_best_start(Graph& graph, const RegistryTable<StartType>& starts,

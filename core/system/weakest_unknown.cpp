@@ -176,13 +176,6 @@ Eigen::VectorXd weakest_direction(const NormalEquations& equations, LinearSolver
   return direction;
 }
 
-std::int64_t weakest_unknown(const NormalEquations& equations, LinearSolver& solver) {
-  const Eigen::VectorXd direction = weakest_direction(equations, solver);
-  Eigen::Index weakest = 0;
-  scale_of(equations).cwiseProduct(direction.cwiseAbs2()).maxCoeff(&weakest);
-  return weakest;
-}
-
 std::string describe_weakest(const Graph& graph, const NormalEquations& equations, LinearSolver& solver) {
   const WeakMotion motion = describe(graph, equations, weakest_direction(equations, solver));
   const VertexIndex v = equations.vertex_of_unknown(motion.strongest);

@@ -30,9 +30,6 @@ namespace waymark {
 /// @param solver analysed for the pattern of the equations; it holds another factor afterwards
 [[nodiscard]] Eigen::VectorXd weakest_direction(const NormalEquations& equations, LinearSolver& solver);
 
-/// Returns the unknown that moves most in that direction.
-[[nodiscard]] std::int64_t weakest_unknown(const NormalEquations& equations, LinearSolver& solver);
-
 /// Returns a sentence about that direction: the vertex of its unknown and what it lacks or, if several vertices move
 /// in it, that their scale or a combination of them is not determined.
 [[nodiscard]] std::string describe_weakest(const Graph& graph, const NormalEquations& equations,

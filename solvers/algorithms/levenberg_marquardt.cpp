@@ -19,9 +19,8 @@ struct LevenbergMarquardtOptions {
 /// Solves (H + mu D) d = -g with D = diag(H) (Marquardt) or the identity. mu follows the rule of
 /// Nielsen, "Damping parameter in Marquardt's method" (1999). Near the minimum a damped step does
 /// not show convergence, so the undamped one is computed and proposed there, and also where the
-/// steps crawl. So is the first step: damping holds
-/// back the soft directions, in which a graph that was chained by its odometry is wrong as a whole, and
-/// folds it into a false minimum. A full step that goes uphill is kept on trial.
+/// steps crawl. So is the first step: damping holds back the soft directions, in which a graph that was
+/// chained by its odometry is wrong as a whole, and folds it into a false minimum. A full step that goes uphill is kept on trial.
 class LevenbergMarquardt final : public Algorithm {
  public:
   explicit LevenbergMarquardt(const LevenbergMarquardtOptions& options) : options_(options) { reset(); }

@@ -95,6 +95,13 @@ Graph bearing_drive(unsigned seed) {
   return graph;
 }
 
+/// Returns by how many standard deviations a note says that chi2 is above what is expected.
+double deviations_told(const std::string& note) {
+  const std::size_t is = note.find(" is ");
+  REQUIRE(is != std::string::npos);
+  return std::stod(note.substr(is + 4));
+}
+
 }  // namespace
 
 TEST_CASE("default start: a good start is used as it is, and nothing else is tried") {
@@ -202,9 +209,7 @@ TEST_CASE("default start: a minimum that two starts agree on is believed, howeve
     freedom += graph.edge_type(b).error_dimension * static_cast<double>(graph.batch(b).size());
   const std::string& note = result.summary.notes.back();
   INFO(note);
-  const std::size_t is = note.find(" is ");
-  REQUIRE(is != std::string::npos);
-  CHECK(std::stod(note.substr(is + 4)) ==
+  CHECK(deviations_told(note) ==
         Approx((result.summary.final_chi2 - freedom) / std::sqrt(2 * freedom)).epsilon(0.005));
   CHECK(note.find("a lower minimum exists") != std::string::npos);
 }
@@ -252,9 +257,7 @@ TEST_CASE("default start: what the gauge holds is no unknown of the chi2 that is
     REQUIRE(result.summary.converged());
     const std::string& note = result.summary.notes.back();
     INFO(note);
-    const std::size_t is = note.find(" is ");
-    REQUIRE(is != std::string::npos);
-    CHECK(std::stod(note.substr(is + 4)) ==
+    CHECK(deviations_told(note) ==
           Approx((result.summary.final_chi2 - freedom) / std::sqrt(2 * freedom)).epsilon(0.005));
     CHECK(note.find(freedom == 6 ? "above the 6 that are" : "above the 3 that are") != std::string::npos);
   }

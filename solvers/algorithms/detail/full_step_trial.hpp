@@ -33,13 +33,12 @@ class FullStepTrial {
   void took_full_step(double gained) {
     gained_ += gained;
     ++steps_;
-    if (gained_ > 0) end();
     crawled_ = 0;
+    if (gained_ > 0) end();
   }
   /// Ends a trial in vain. The next one is due after short steps have crawled for twice as long.
   void fail() {
     end();
-    crawled_ = 0;
     patience_ = std::min(2 * patience_, kLongestPatience);
   }
   /// Ends a trial that nothing is concluded from.

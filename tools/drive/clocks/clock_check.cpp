@@ -144,9 +144,8 @@ std::string remedies(const ClockOffset& offset, bool may_be_speed_alone, double 
 /// has a report of its own.
 struct Found {
   std::vector<std::string> warnings;
-  std::string clock_warning{};
-  double clock_late_s = 0;
-  bool tells_late_quantity = false;  ///< as PrepareReport has them
+  std::optional<ToldClock> told_clock{};  ///< as PrepareReport has them
+  bool tells_late_quantity = false;
   std::optional<MovedQuantity> moved_quantity{};
 };
 
@@ -169,9 +168,7 @@ void treat_clock(const ClockOffset& offset, const DriveLogs& logs, DriveDescript
         remedies(offset, may_be_speed_alone, description.gnss.empty() ? 0 : description.gnss.front().delay_s);
   }
   found.warnings.push_back(clock_warning("the odometry", offset, cure));
-  if (moves) return;
-  found.clock_warning = found.warnings.back();
-  found.clock_late_s = offset.late_s;
+  if (!moves) found.told_clock = {found.warnings.back(), offset.late_s};
 }
 
 /// Moves the readings of a quantity that is late alone, until it no longer is: what a late speed seems to contradict was
@@ -232,8 +229,7 @@ PreparedDrive with_clock_told(PreparedDrive drive, const DriveLogs& logs, DriveD
   if (offset) treat_clock(*offset, logs, description, treatment, drive, found);
   drive.report.tells_late_quantity = found.tells_late_quantity;
   drive.report.moved_quantity = found.moved_quantity;
-  drive.report.clock_warning = found.clock_warning;
-  drive.report.clock_late_s = found.clock_late_s;
+  drive.report.told_clock = found.told_clock;
   for (std::string& warning : found.warnings) drive.report.warnings.push_back(std::move(warning));
   return drive;
 }

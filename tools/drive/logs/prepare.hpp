@@ -66,6 +66,12 @@ struct MovedQuantity {
   double sigma_s = 0;  ///< of that; delays of the fixes are not known better
 };
 
+/// A warning that the clock of the odometry seems wrong. The fusion takes it back if it finds why.
+struct ToldClock {
+  std::string warning;
+  double late_s = 0;
+};
+
 struct PrepareReport {
   StreamReport odometry;
   StreamReport gnss;
@@ -83,9 +89,7 @@ struct PrepareReport {
   std::vector<std::string> notes;
   /// sentences about readings that contradict each other
   std::vector<std::string> warnings;
-  /// among them: that the clock of the odometry seems wrong. The fusion takes it back if it finds why
-  std::string clock_warning{};
-  double clock_late_s = 0;  ///< by which it seems late there
+  std::optional<ToldClock> told_clock{};  ///< the warning of which is among them
   /// of odometries whose yaw rates no vehicle has, as if deg/s were read as rad/s: what to state, by name
   std::map<std::string, std::string> impossible_turns{};
   std::set<std::string> left_out;  ///< names of odometries that the fixes contradict

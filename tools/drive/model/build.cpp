@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/nodes/receiver_filter.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 #include <waymark/types_se2/se2.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
@@ -39,17 +38,6 @@ FixMoment moment_of_fix(const DriveNodes& nodes, const NodeInTime& moment, const
   return {moved.position + rotate(moved.heading, antenna), rotate(moved.heading, velocity)};
 }
 
-/// Returns what a quantity of the nodes is at a moment: linear between them, and as at the ends beyond them.
-Eigen::Vector2d at_moment(Stamp moment, const std::vector<Stamp>& stamps,
-                          const std::vector<Eigen::Vector2d>& at_nodes) {
-  const auto after = std::lower_bound(stamps.begin(), stamps.end(), moment);
-  if (after == stamps.begin()) return at_nodes.front();
-  if (after == stamps.end()) return at_nodes.back();
-  const auto i = static_cast<std::size_t>(after - stamps.begin());
-  const double share = seconds_between(stamps[i - 1], moment) / seconds_between(stamps[i - 1], stamps[i]);
-  return (1 - share) * at_nodes[i - 1] + share * at_nodes[i];
-}
-
 /// Adds edges to those of a source; they may continue its last ones of the type.
 void add_share(const formats::EdgeShare& edges, std::vector<formats::EdgeShare>& known) {
   const auto last = std::find_if(known.rbegin(), known.rend(),
@@ -75,22 +63,6 @@ std::optional<Eigen::Matrix3d> tie_of(const FusionSettings& settings, const Type
 }
 
 }  // namespace
-
-std::vector<Eigen::Vector2d> smoothed_at_fixes(const PlacedDrive& placed) {
-  const Timeline& timeline = placed.timeline;
-  std::vector<Eigen::Vector2d> smoothed_m(placed.fixes.size(), Eigen::Vector2d::Zero());
-  for (std::size_t source = 0; source < placed.smoothings_s.size(); ++source) {
-    if (!(placed.smoothings_s[source] > 0)) continue;
-    const std::vector<Eigen::Vector2d> beside_m =
-        smoothed_beside(timeline.intervals, placed.smoothings_s[source], placed.standstill_mps);
-    for (std::size_t i = 0; i < placed.fixes.size(); ++i) {
-      if (placed.fixes[i].source != static_cast<int>(source)) continue;
-      const Stamp measured = placed.fixes[i].stamp.later(-placed.time_offsets_s[source]);
-      smoothed_m[i] = at_moment(measured, timeline.stamps, beside_m);
-    }
-  }
-  return smoothed_m;
-}
 
 std::vector<AbsoluteGroup> groups_of(const PlacedDrive& placed, const FusionSettings& settings) {
   std::vector<AbsoluteGroup> groups;

@@ -74,9 +74,6 @@ struct DrivePart {
   std::span<MeasurementGroups> groups = {};
 };
 
-/// Returns Fix::smoothed_m for the fixes of a drive, in their order, at the time offsets that the graph assumes.
-[[nodiscard]] std::vector<Eigen::Vector2d> smoothed_at_fixes(const PlacedDrive& placed);
-
 /// A graph that grows with its drive. Vertices may leave it if dropped() is told so.
 class GraphBuilder {
  public:

@@ -186,21 +186,36 @@ bool has_two_clocks(const PreparedDrive& drive) {
   return drive.relative.empty() && drive.sensors.empty();
 }
 
+/// Tells whether what is stated of the delay of a receiver is believed.
+bool is_delay_believed(int source, const AbsoluteGroup& group, const PreparedDrive& drive,
+                       const FusionSettings& stated) {
+  const auto at = static_cast<std::size_t>(source);
+  const bool is_stated = at < drive.receivers.size() && drive.receivers[at].delay_is_stated;
+  return is_stated || !is_delay_open(group, stated);
+}
+
+/// Tells whether fixes that seem early may mean a late odometry, whatever a fusion finds.
+bool may_be_late(const PreparedDrive& drive, const FusionSettings& stated, const ModeledDrive& modeled) {
+  if (!has_two_clocks(drive) || drive.report.tells_late_quantity) return false;
+  const std::vector<AbsoluteGroup> groups = groups_of(modeled.placed, modeled.decision);
+  return std::any_of(groups.begin(), groups.end(), [&](const AbsoluteGroup& group) {
+    return std::any_of(group.sources.begin(), group.sources.end(),
+                       [&](int source) { return !is_delay_believed(source, group, drive, stated); });
+  });
+}
+
 /// Returns by how much the odometry is late, if all receivers that tell know positions before it had them. What is
-/// stated of their delays is believed.
+/// stated of their delays is believed. Asked only where it may_be_late().
 double late_odometry(const PreparedDrive& drive, const FusionSettings& stated, const ModeledDrive& modeled) {
-  if (!has_two_clocks(drive) || drive.report.tells_late_quantity) return 0;
   std::set<int> used;
   for (const Fix& fix : modeled.placed.fixes)
     if (fix.status == FixStatus::accepted) used.insert(fix.source);
   double late_s = std::numeric_limits<double>::infinity();
   for (const AbsoluteGroup& group : groups_of(modeled.placed, modeled.decision)) {
     for (const int source : group.sources) {
-      const auto at = static_cast<std::size_t>(source);
-      const double early_s = -modeled.placed.time_offsets_s[at];
+      const double early_s = -modeled.placed.time_offsets_s[static_cast<std::size_t>(source)];
       if (!used.contains(source) || early_s == 0) continue;  // it tells nothing
-      const bool is_stated = at < drive.receivers.size() && drive.receivers[at].delay_is_stated;
-      if (is_stated || !is_delay_open(group, stated)) return 0;
+      if (is_delay_believed(source, group, drive, stated)) return 0;
       late_s = std::min(late_s, early_s);
     }
   }
@@ -209,7 +224,7 @@ double late_odometry(const PreparedDrive& drive, const FusionSettings& stated, c
 
 /// Takes back that the clock of the odometry seems wrong: it is known why.
 PreparedDrive with_clock_explained(PreparedDrive drive) {
-  std::erase(drive.report.warnings, drive.report.clock_warning);
+  if (drive.report.told_clock) std::erase(drive.report.warnings, drive.report.told_clock->warning);
   return drive;
 }
 
@@ -424,6 +439,7 @@ void Fusion::put_on_time(const FusionSettings& settings, const std::optional<Ant
   constexpr double kTold_s = 0.02;
   constexpr double kAsTold = 0.5;
   constexpr int kMostRounds = 3;
+  if (!may_be_late(drive_, settings, freed.modeled)) return;
   const ClockDrift drift = freed.modeled.clock_drift;
   double moved_s = 0;
   for (int round = 0; round < kMostRounds; ++round) {
@@ -432,7 +448,8 @@ void Fusion::put_on_time(const FusionSettings& settings, const std::optional<Ant
     const double late_s = late_odometry(drive_, settings, antenna ? judged.modeled : freed.modeled);
     if (antenna ? late_s < kTold_s : late_s == 0) break;
     PreparedDrive on_time = with_stamps_later(freed.drive_or(drive_), [&](Stamp) { return -late_s; });
-    if (late_s >= kAsTold * drive_.report.clock_late_s && drive_.report.clock_late_s > 0)
+    const std::optional<ToldClock>& told = drive_.report.told_clock;
+    if (told && told->late_s > 0 && late_s >= kAsTold * told->late_s)
       on_time = with_clock_explained(std::move(on_time));
     take(std::move(on_time), settings, freed);
     moved_s += late_s;
@@ -526,8 +543,7 @@ ModeledDrive Fusion::completed(Freed freed) const {
   if (document.sources.empty() && !modeled.placed.fixes.empty())
     document.antenna_m = modeled.placed.fixes.front().antenna_m;
   document.truth_reference_m = drive.truth_reference_m;
-  const std::vector<Eigen::Vector2d> smoothed_m = smoothed_at_fixes(modeled.placed);
-  for (std::size_t i = 0; i < smoothed_m.size(); ++i) modeled.placed.fixes[i].smoothed_m = smoothed_m[i];
+  take_smoothing(modeled.placed);
   document.fixes = modeled.placed.fixes;
   document.provenance = provenance_of(drive, modeled, registry_);
   return modeled;

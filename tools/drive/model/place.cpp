@@ -1,4 +1,3 @@
-#include <waymark/tools/drive/model/build.hpp>
 #include <waymark/tools/drive/model/place.hpp>
 #include <waymark/tools/drive/model/surroundings.hpp>
 
@@ -15,6 +14,7 @@
 #include <waymark/tools/drive/comparison/plausibility.hpp>
 #include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/model/start_search.hpp>
+#include <waymark/tools/drive/nodes/receiver_filter.hpp>
 
 namespace waymark::drive {
 
@@ -215,7 +215,39 @@ void compare_with_fixes(const PreparedDrive& drive, std::span<const Eigen::Vecto
   for (std::string& warning : compared.warnings) placed.warnings.push_back(std::move(warning));
 }
 
+/// Returns what a quantity of the nodes is at a moment: linear between them, and as at the ends beyond them.
+Eigen::Vector2d at_moment(Stamp moment, const std::vector<Stamp>& stamps,
+                          const std::vector<Eigen::Vector2d>& at_nodes) {
+  const auto after = std::lower_bound(stamps.begin(), stamps.end(), moment);
+  if (after == stamps.begin()) return at_nodes.front();
+  if (after == stamps.end()) return at_nodes.back();
+  const auto i = static_cast<std::size_t>(after - stamps.begin());
+  const double share = seconds_between(stamps[i - 1], moment) / seconds_between(stamps[i - 1], stamps[i]);
+  return (1 - share) * at_nodes[i - 1] + share * at_nodes[i];
+}
+
 }  // namespace
+
+std::vector<Eigen::Vector2d> smoothed_at_fixes(const PlacedDrive& placed) {
+  const Timeline& timeline = placed.timeline;
+  std::vector<Eigen::Vector2d> smoothed_m(placed.fixes.size(), Eigen::Vector2d::Zero());
+  for (std::size_t source = 0; source < placed.smoothings_s.size(); ++source) {
+    if (!(placed.smoothings_s[source] > 0)) continue;
+    const std::vector<Eigen::Vector2d> beside_m =
+        smoothed_beside(timeline.intervals, placed.smoothings_s[source], placed.standstill_mps);
+    for (std::size_t i = 0; i < placed.fixes.size(); ++i) {
+      if (placed.fixes[i].source != static_cast<int>(source)) continue;
+      const Stamp measured = placed.fixes[i].stamp.later(-placed.time_offsets_s[source]);
+      smoothed_m[i] = at_moment(measured, timeline.stamps, beside_m);
+    }
+  }
+  return smoothed_m;
+}
+
+void take_smoothing(PlacedDrive& placed) {
+  const std::vector<Eigen::Vector2d> smoothed_m = smoothed_at_fixes(placed);
+  for (std::size_t i = 0; i < smoothed_m.size(); ++i) placed.fixes[i].smoothed_m = smoothed_m[i];
+}
 
 PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, const FusionSettings& settings,
                         const TypeRegistry& registry) {
@@ -236,8 +268,7 @@ PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, co
     return placed;
   }
   placed.warnings = drive.report.warnings;
-  const std::vector<Eigen::Vector2d> smoothed_m = smoothed_at_fixes(placed);
-  for (std::size_t i = 0; i < smoothed_m.size(); ++i) placed.fixes[i].smoothed_m = smoothed_m[i];
+  take_smoothing(placed);
   std::vector<Eigen::Vector3d> antenna = reckoned_antenna(timeline, placed.fixes, placed.standstill_mps);
   compare_with_fixes(drive, antenna, placed);
   std::optional<Timeline> mended;  // the turns that the vehicle made

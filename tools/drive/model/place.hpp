@@ -35,7 +35,7 @@ struct PlacedDrive {
   std::vector<std::string> receivers;  ///< names of the absolute sources
   /// how late the graph assumes the fixes of each absolute source to be: latency.hpp
   std::vector<double> time_offsets_s;
-  /// time of the filter of each absolute source (ReceiverFilter); 0: it does not smooth
+  /// time of the filter of each absolute source (ReceiverFilter), s; 0: it does not smooth
   std::vector<double> smoothings_s;
   std::string odometry_name;                 ///< the relative source that nodes come from
   std::vector<PreparedOdometry> relative{};  ///< as PreparedDrive::relative
@@ -63,6 +63,12 @@ struct PlacedDrive {
 
 /// Returns what precedes a sentence about the odometry that gives the nodes: its name, if there are several.
 [[nodiscard]] std::string of_several(const PlacedDrive& placed);
+
+/// Returns Fix::smoothed_m for the fixes of a drive, in their order, at the time offsets that the graph assumes.
+[[nodiscard]] std::vector<Eigen::Vector2d> smoothed_at_fixes(const PlacedDrive& placed);
+
+/// Takes that for all fixes.
+void take_smoothing(PlacedDrive& placed);
 
 /// Runs the gate and computes the initial guess.
 /// @param timeline of this drive

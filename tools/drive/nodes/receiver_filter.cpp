@@ -9,7 +9,6 @@
 namespace waymark::drive {
 
 void ReceiverFilter::advance(const Interval& interval, double standstill_mps) {
-  constexpr double kForgotten = 8;  // times its time: less than 1 % of what the filter was off is left
   const bool stands = interval.stands(standstill_mps);
   const double half_turn_rad = stands ? 0 : 0.5 * interval.yaw_rate_radps * interval.dt_s;
   const Eigen::Vector2d velocity(stands ? 0 : interval.speed_mps, 0);

@@ -22,6 +22,9 @@ namespace waymark::drive {
 /// Follows a vehicle from interval to interval. It begins settled: at the right place, with the right velocity.
 class ReceiverFilter {
  public:
+  /// After so many times its time less than 1 % of what a filter was off is left.
+  static constexpr double kForgotten = 8;
+
   /// @param time_s T, > 0
   explicit ReceiverFilter(double time_s) : time_s_(time_s) {}
 

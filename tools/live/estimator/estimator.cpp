@@ -381,7 +381,6 @@ Fix Estimator::projected(const GeodeticFix& fix) {
 
 /// Returns Fix::smoothed_m, if the filter of its receiver is stated.
 Eigen::Vector2d Estimator::smoothed_m(const Fix& fix) const {
-  constexpr double kForgotten = 8;  // times the time of a filter: less than 1 % of its error is left
   const double time_s = description_.gnss[static_cast<std::size_t>(fix.source)].smoothing_s.value_or(0);
   if (!(time_s > 0)) return {0, 0};
   const std::deque<Reckoning::Node>& nodes = reckoning_.nodes();
@@ -393,7 +392,8 @@ Eigen::Vector2d Estimator::smoothed_m(const Fix& fix) const {
   };
   drive::ReceiverFilter filter(time_s);
   const std::size_t end = std::min(node_at(fix.stamp) + 1, nodes.size());
-  for (std::size_t node = node_at(fix.stamp.later(-kForgotten * time_s)) + 1; node < end; ++node)
+  for (std::size_t node = node_at(fix.stamp.later(-drive::ReceiverFilter::kForgotten * time_s)) + 1;
+       node < end; ++node)
     filter.advance(reckoning_.motion_to_node(node), reckoning_.standstill_mps());
   return filter.beside_m();
 }

@@ -123,7 +123,7 @@ void check_robust(const RobustChoice& choice, const TypeRegistry& registry) {
 }
 
 void attach_losses(Graph& graph, const RobustChoice& choice, const TypeRegistry& registry) {
-  if (choice.method != "none") return;
+  if (choice.method != "none" || choice.losses.empty()) return;
   const std::vector<EdgePlace> trusted = trust_rule(choice)(graph);
   for (const std::string& text : choice.losses) {
     const LossRequest request = parse_loss(text, registry);
