@@ -80,6 +80,9 @@ class Graduation {
  private:
   void find_candidates();
   void move_to_candidates(const std::vector<EdgePlace>& edges);
+  std::vector<EdgePlace> unsupported();
+  bool is_clean(const Verdict& with_all) const;
+  bool begin_with_confirmed();
   void search();
   template <typename Search>
   void from_trusted(Search search);
@@ -94,7 +97,7 @@ class Graduation {
   bool doubt_ways(const Verdict& verdict);
   bool doubt_all(const std::vector<EdgePlace>& doubted, std::vector<EdgePlace> outliers,
                  const Verdict& verdict);
-  bool is_dense() const;
+  void weigh();
   bool may_be_grown(const Graph& trusted) const;
   bool is_implausible(const Verdict& verdict) const;
   bool ends_badly(double share) const;
@@ -144,7 +147,8 @@ class Graduation {
   std::optional<detail::WrongPlaces> wrong_places_;
   Verdict best_;
   Verdict best_by_edges_;  // the cheapest one if every edge of a group counted
-  bool dense_ = false;     // all edges together would take too long
+  bool is_slow_ = false;   // a step with all edges takes a part of a second
+  bool dense_ = false;     // and so many seconds that none is done
   bool interrupted_ = false;
   GraduationResult result_;
 };
@@ -279,12 +283,14 @@ bool Graduation::ends_badly(double share) const {
   return !interrupted_ && !dense_ && (best_.values.empty() || is_implausible(best_) || outliers_agree(share));
 }
 
-// Tells whether all edges fill the factor so much that each step would take many seconds. False closures do,
-// because they join places anywhere; right ones on 200,000 street corners would not.
-bool Graduation::is_dense() const {
-  constexpr double kManyOperations = 1e11;
-  if (factorization_operations(graph_) < kManyOperations) return false;
-  return may_be_grown(without_edges(graph_, without_joining(candidates_)));
+// Tells how much all edges fill the factor. False closures do, because they join places anywhere; right ones on
+// 200,000 street corners would not.
+void Graduation::weigh() {
+  constexpr double kSeconds = 1e9;  // operations: the hundreds of steps of narrowing would take minutes
+  constexpr double kManySeconds = 1e11;
+  const double operations = factorization_operations(graph_);
+  is_slow_ = operations > kSeconds;
+  dense_ = operations >= kManySeconds && may_be_grown(without_edges(graph_, without_joining(candidates_)));
 }
 
 // Tells whether these edges place what they join, or nothing else says where that is. Elsewhere the innovations
@@ -308,15 +314,19 @@ bool Graduation::outliers_agree(double share) const {
     return graph_.batch(place.batch).vertices(place.edge).size() == 2;
   });
   if (!are_pairs) return true;  // what they want is not compared
-  return static_cast<double>(agreeing_outliers().size()) >= kFewOutliers;
+  return !agreeing_outliers().empty();
 }
 
-// Returns the most of the outliers that want the same.
+// Returns the most of the outliers that want the same. None: no more than may by chance.
 std::vector<EdgePlace> Graduation::agreeing_outliers() const {
   Graph at_best = graph_;
   at_best.set_values(best_.values);
   const double wide = 4 * chi_square_quantile(options_.inlier_probability, 3);
-  return detail::most_that_agree(std::move(at_best), best_.outliers, wide);
+  const std::size_t by_chance = detail::most_by_chance(at_best, best_.outliers, wide);
+  std::vector<EdgePlace> most = detail::most_that_agree(std::move(at_best), best_.outliers, wide);
+  const bool is_chance = most.size() <= by_chance || static_cast<double>(most.size()) < kFewOutliers;
+  if (is_chance) most.clear();
+  return most;
 }
 
 // Returns the outliers that remain if those that agree with the rest return, a share of them at a time. Those
@@ -640,7 +650,7 @@ bool Graduation::doubt_all(const std::vector<EdgePlace>& doubted, std::vector<Ed
 // @return there is a cheaper split now
 bool Graduation::doubt_for_agreeing() {
   const std::vector<EdgePlace> agreeing = agreeing_outliers();
-  if (static_cast<double>(agreeing.size()) < kFewOutliers || interrupted_) return false;
+  if (agreeing.empty() || interrupted_) return false;
   std::vector<EdgePlace> outside;
   std::set_difference(best_.outliers.begin(), best_.outliers.end(), agreeing.begin(), agreeing.end(),
                       std::back_inserter(outside));
@@ -650,7 +660,12 @@ bool Graduation::doubt_for_agreeing() {
 }
 
 void Graduation::doubt() {
-  for (int round = 0; round < kMaxDoubts && doubt_trusted(); ++round) search();
+  for (int round = 0; round < kMaxDoubts && doubt_trusted(); ++round) {
+    if (is_slow_ && !ends_badly(0))
+      cross_examine();
+    else
+      search();
+  }
 }
 
 // A wrong trusted edge shows only if the right closures over it are kept. They may be cheaper outside, as few
@@ -675,25 +690,69 @@ bool Graduation::is_implausible(const Verdict& verdict) const {
                             1 - options_.inlier_probability;
 }
 
+// Returns the candidates that no other one close by confirms.
+std::vector<EdgePlace> Graduation::unsupported() {
+  std::vector<EdgePlace> confirmed;
+  for (const std::vector<EdgePlace>& group : wrong_places_->groups(graph_, candidates_))
+    if (group.size() > 1) confirmed.insert(confirmed.end(), group.begin(), group.end());
+  std::sort(confirmed.begin(), confirmed.end());
+  std::vector<EdgePlace> result;
+  std::set_difference(candidates_.begin(), candidates_.end(), confirmed.begin(), confirmed.end(),
+                      std::back_inserter(result));
+  return result;
+}
+
+// Tells whether the values of the graph, which are those of the verdict, fit all edges.
+bool Graduation::is_clean(const Verdict& with_all) const {
+  return !interrupted_ && beyond_bound().empty() && contradicted(trusted_).empty() &&
+         !is_implausible(with_all);
+}
+
+// Judges by the minimum of those candidates that others close by confirm. Single false closures are outside then,
+// however many they are; those that come in groups are not.
+// @return this ends well; otherwise the values stay
+bool Graduation::begin_with_confirmed() {
+  constexpr double kFewOutside = 0.01;  // with so few more, all edges are still solved fast
+  const std::vector<double> start = graph_.values();
+  const std::vector<EdgePlace> doubtful = unsupported();
+  if (doubtful.size() == candidates_.size()) return false;
+  judge(without_joining(doubtful));
+  const auto few = static_cast<std::size_t>(kFewOutside * static_cast<double>(candidates_.size()));
+  if (!best_.values.empty() && !interrupted_ && !dense_ && best_.outliers.size() <= few) {
+    graph_.set_values(best_.values);
+    if (Verdict with_all = optimize_without({}); is_clean(with_all)) {
+      best_ = std::move(with_all);
+      return true;
+    }
+  }
+  cross_examine();
+  const bool ends_well = !best_.values.empty() && !interrupted_ && !ends_badly(0);
+  graph_.set_values(ends_well ? best_.values : start);
+  return ends_well;
+}
+
 GraduationResult Graduation::run() {
   const auto start = std::chrono::steady_clock::now();
   options_.check();
   find_candidates();
-  dense_ = is_dense();
+  weigh();
+  // 1. Begin with the candidates that confirm each other.
+  const bool begun = begin_with_confirmed();
   Verdict with_all;
-  // 1. Use all edges. If none is beyond its bound, there are no outliers. With outliers this
+  // 2. Use all edges. If none is beyond its bound, there are no outliers. With outliers this
   //    minimum may be far away; the next step need not start exactly from it.
-  if (!dense_) {
+  if (!dense_ && !begun) {
     OptimizerOptions first = options_.optimizer;
     first.max_iterations = std::min(kFirstIterations, first.max_iterations);
     with_all.summary = count(optimize(graph_, algorithm_, solver_, first));
   }
   const std::vector<double> of_all_edges = graph_.values();
-  const bool hidden = !dense_ && beyond_bound().empty() && contradicted(trusted_).empty();
-  const bool suspicious = !hidden || is_implausible(with_all);
-  // 2. Grow a split from what is trusted. If that does not end well, narrow the loss, from the minimum of all edges
+  const bool hidden = !dense_ && !begun && beyond_bound().empty() && contradicted(trusted_).empty();
+  const bool suspicious = begun ? !best_.outliers.empty() || !contradicted(trusted_).empty()
+                                : !hidden || is_implausible(with_all);
+  // 3. Grow a split from what is trusted. If that does not end well, narrow the loss, from the minimum of all edges
   //    and from that of the trusted ones.
-  if (suspicious) {
+  if (suspicious && !begun) {
     if (hidden) {
       judge({});
       cross_examine();
@@ -721,7 +780,7 @@ GraduationResult Graduation::run() {
     best_ = optimize_without(dense_ ? without_joining(candidates_) : std::vector<EdgePlace>{});
     best_.cost = cost(best_);
   }
-  // 3. Doubt what was trusted: single edges, and all of them if they cost many of the others.
+  // 4. Doubt what was trusted: single edges, and all of them if they cost many of the others.
   if (suspicious && options_.doubts_trusted) {
     doubt_best();
     if (hidden) {

@@ -26,12 +26,16 @@
 /// chi2 is larger than noise makes it, or closures are outside, the trusted edges are therefore asked by how much
 /// the minimum would fall without them, and asked again with those outliers inside that agree on one motion.
 ///
-/// The first split is grown from the trusted edges: those candidates return that agree with the rest, a few at
-/// a time, and first those whose place the rest knows best. That takes a small part of the time of narrowing,
-/// because false edges do not fill the factor. The loss is narrowed if the kept edges do not fit, or if some
-/// outliers agree on one motion: they may be right. It is not narrowed where a step with all edges would take
-/// many seconds. If more than a fifth of the candidates are then outside and agree so, narrowing is repeated
-/// from the minimum of the trusted edges, and at last without any trust: a wrong edge that alone joins two
+/// The first split has those candidates inside that another one close by confirms: at most two poses away at either
+/// end, and as the odometry between them wants it. A place that is seen again is seen from several poses, but
+/// single false closures confirm nothing, however many they are.
+///
+/// Where that does not end well, a split is grown from the trusted edges: those candidates return that agree with
+/// the rest, a few at a time, and first those whose place the rest knows best. That takes a small part of the time of
+/// narrowing, because false edges do not fill the factor. The loss is narrowed if the kept edges do not fit, or if some
+/// outliers agree on one motion, and more than may by chance: they may be right. It is not narrowed where a step with
+/// all edges would take many seconds. If more than a fifth of the candidates are then outside and agree so, narrowing
+/// is repeated from the minimum of the trusted edges, and at last without any trust: a wrong edge that alone joins two
 /// parts contradicts nothing, once all right ones between them are out. The cheapest split of all searches
 /// counts.
 ///

@@ -23,4 +23,9 @@ namespace waymark::detail {
 [[nodiscard]] std::vector<EdgePlace> most_that_agree(Graph graph, std::span<const EdgePlace> edges,
                                                      double bound);
 
+/// Returns how many of some edges agree on one motion by chance: if they are of random motions anywhere in the area
+/// of the poses, one of a hundred such sets has more. Edges without information on some axis do not count.
+/// @param graph at values that tell the area @param bound as above
+[[nodiscard]] std::size_t most_by_chance(const Graph& graph, std::span<const EdgePlace> edges, double bound);
+
 }  // namespace waymark::detail

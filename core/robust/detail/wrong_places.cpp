@@ -51,6 +51,17 @@ double squared_error_at(const FiniteMotion& motion, const Closure& closure, Grap
                              std::array{closure.moved}, motion);
 }
 
+bool is_pair(const Graph& graph, EdgePlace place) {
+  return graph.batch(place.batch).vertices(place.edge).size() == 2;
+}
+
+std::vector<EdgePlace> pairs_of(const Graph& graph, std::span<const EdgePlace> edges) {
+  std::vector<EdgePlace> result;
+  for (const EdgePlace place : edges)
+    if (is_pair(graph, place)) result.push_back(place);
+  return result;
+}
+
 /// Closures in the order of their earlier ends, of which groups are taken out.
 class Closures {
  public:
@@ -161,21 +172,13 @@ WrongPlaces::WrongPlaces(const Graph& graph, std::span<const EdgePlace> odometry
                          LinearSolver& solver, std::function<double(EdgePlace)> price)
     : algorithm_(algorithm), solver_(solver), price_(std::move(price)), order_(places_by_id(graph)) {
   for (const EdgePlace place : odometry) {
-    if (graph.batch(place.batch).vertices(place.edge).size() != 2) continue;
+    if (!is_pair(graph, place)) continue;
     const Closure ends = closure_of(graph, order_, place);
     if (ends.later - ends.earlier <= kGap) odometry_.emplace(ends.earlier, place);
   }
 }
 
-double WrongPlaces::price(Graph& values_of, std::span<const EdgePlace> edges) {
-  double result = 0;
-  std::vector<EdgePlace> pairs;
-  for (const EdgePlace place : edges) {
-    if (values_of.batch(place.batch).vertices(place.edge).size() == 2)
-      pairs.push_back(place);
-    else
-      result += price_(place);
-  }
+std::vector<std::vector<EdgePlace>> WrongPlaces::groups(Graph& values_of, std::span<const EdgePlace> edges) {
   const Closure* asked = nullptr;
   std::optional<FiniteMotion> motion;
   const auto agree = [&](const Closure& one, const Closure& other) {
@@ -188,8 +191,18 @@ double WrongPlaces::price(Graph& values_of, std::span<const EdgePlace> edges) {
     std::sort(both.begin(), both.end());
     return chi2_alone(values_of, both) <= price_(other.place);
   };
-  Closures closures(values_of, order_, pairs);
+  Closures closures(values_of, order_, pairs_of(values_of, edges));
+  std::vector<std::vector<EdgePlace>> result;
   for (std::vector<EdgePlace> group; !(group = closures.take_group(agree)).empty();)
+    result.push_back(std::move(group));
+  return result;
+}
+
+double WrongPlaces::price(Graph& values_of, std::span<const EdgePlace> edges) {
+  double result = 0;
+  for (const EdgePlace place : edges)
+    if (!is_pair(values_of, place)) result += price_(place);
+  for (const std::vector<EdgePlace>& group : groups(values_of, edges))
     result += group.size() == 1 ? price_(group[0]) : price_of_group(values_of, group);
   return result;
 }

@@ -30,6 +30,11 @@ class WrongPlaces {
   WrongPlaces(const Graph& graph, std::span<const EdgePlace> odometry, Algorithm& algorithm,
               LinearSolver& solver, std::function<double(EdgePlace)> price);
 
+  /// Returns the edges of two vertices by group, those that are alone as groups of one; every list is ascending.
+  /// @param values_of as below
+  [[nodiscard]] std::vector<std::vector<EdgePlace>> groups(Graph& values_of,
+                                                           std::span<const EdgePlace> edges);
+
   /// @param values_of the graph, at values at which ways are right over a few poses; it gets them back
   [[nodiscard]] double price(Graph& values_of, std::span<const EdgePlace> edges);
 
