@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 #include <waymark/core/system/detail/finite_motion.hpp>
 
@@ -26,6 +27,7 @@ namespace waymark::detail {
 /// Returns how many of some edges agree on one motion by chance: if they are of random motions anywhere in the area
 /// of the poses, one of a hundred such sets has more. Edges without information on some axis do not count.
 /// @param graph at values that tell the area @param bound as above
-[[nodiscard]] std::size_t most_by_chance(const Graph& graph, std::span<const EdgePlace> edges, double bound);
+[[nodiscard]] WAYMARK_EXPORT std::size_t most_by_chance(const Graph& graph, std::span<const EdgePlace> edges,
+                                                        double bound);
 
 }  // namespace waymark::detail
