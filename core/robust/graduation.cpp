@@ -100,6 +100,7 @@ class Graduation {
   void weigh();
   bool may_be_grown(const Graph& trusted) const;
   bool is_implausible(const Verdict& verdict) const;
+  bool is_doubtful(double share) const;
   bool ends_badly(double share) const;
   bool outliers_agree(double share) const;
   std::vector<EdgePlace> agreeing_outliers() const;
@@ -279,8 +280,13 @@ void Graduation::apart(Search search) {
 }
 
 // Tells whether another search may find better. @param share of the candidates that may be outside
+bool Graduation::is_doubtful(double share) const {
+  return best_.values.empty() || is_implausible(best_) || outliers_agree(share);
+}
+
+// Tells the same of a search with all edges.
 bool Graduation::ends_badly(double share) const {
-  return !interrupted_ && !dense_ && (best_.values.empty() || is_implausible(best_) || outliers_agree(share));
+  return !interrupted_ && !dense_ && is_doubtful(share);
 }
 
 // Tells how much all edges fill the factor. False closures do, because they join places anywhere; right ones on
@@ -712,13 +718,13 @@ bool Graduation::is_clean(const Verdict& with_all) const {
 // however many they are; those that come in groups are not.
 // @return this ends well; otherwise the values stay
 bool Graduation::begin_with_confirmed() {
-  constexpr double kFewOutside = 0.01;  // with so few more, all edges are still solved fast
+  constexpr double kFewOutside = 0.01;  // from here all edges may be reached
   const std::vector<double> start = graph_.values();
   const std::vector<EdgePlace> doubtful = unsupported();
   if (doubtful.size() == candidates_.size()) return false;
   judge(without_joining(doubtful));
   const auto few = static_cast<std::size_t>(kFewOutside * static_cast<double>(candidates_.size()));
-  if (!best_.values.empty() && !interrupted_ && !dense_ && best_.outliers.size() <= few) {
+  if (!best_.values.empty() && !interrupted_ && !is_slow_ && best_.outliers.size() <= few) {
     graph_.set_values(best_.values);
     if (Verdict with_all = optimize_without({}); is_clean(with_all)) {
       best_ = std::move(with_all);
@@ -726,7 +732,7 @@ bool Graduation::begin_with_confirmed() {
     }
   }
   cross_examine();
-  const bool ends_well = !best_.values.empty() && !interrupted_ && !ends_badly(0);
+  const bool ends_well = !interrupted_ && !is_doubtful(0);
   graph_.set_values(ends_well ? best_.values : start);
   return ends_well;
 }
