@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/core/graph/checks/edge_type_check.hpp>
+#include <waymark/types_se2/edge_se2.hpp>
 
 #include "support/dense.hpp"
 #include "support/registry.hpp"
@@ -48,6 +49,24 @@ TEST_CASE("every edge type: given Jacobians are those of differences of the erro
     }
   });
   CHECK(without_derivative < cases / 20);
+}
+
+// At 1e9 m a coordinate is rounded by 1e-7 m, which is 1e-4 of the step of the differences.
+TEST_CASE("every edge type: Jacobians far from the origin are not called wrong, and wrong ones are") {
+  for (const double origin : {1e6, 1e9}) {
+    Graph graph;
+    graph.add_vertex<VertexSe2>(VertexId{0}, {origin, -origin, 1});
+    graph.add_vertex<VertexSe2>(VertexId{1}, {origin + 3, -origin + 2, 2});
+    graph.add_edge(EdgeSe2{{3, 2, 1}}, {0, 1}, Eigen::Matrix3d::Identity());
+    const auto numeric = numeric_jacobian(graph, 0, 0, 1);
+    REQUIRE(numeric);
+    CHECK(numeric->tolerance < 2e-3);
+    CHECK(check_gradients(graph, 0, 1).judged == 2);
+    CHECK(check_gradients(graph, 0, 1).error < kGradientTolerance);
+    // d e / d (x, y) of the second pose is (R(1) R(1))^T, of pose and measurement: differences tell it as well as they claim.
+    CHECK(std::abs(numeric->jacobian(0, 0) - std::cos(2)) <= numeric->tolerance);
+    CHECK(std::abs(numeric->jacobian(0, 1) - std::sin(2)) <= numeric->tolerance);
+  }
 }
 
 TEST_CASE("every edge type: sound in the check that plugin authors run") {

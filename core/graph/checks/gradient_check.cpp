@@ -41,6 +41,15 @@ class ErrorAlongVertex {
     return error;
   }
 
+  /// Returns what rounding of the vertices may do to a difference of errors. Far from the origin, it is all there is.
+  [[nodiscard]] double rounding() const {
+    constexpr double kOperations = 8;
+    double largest = 0;
+    for (const VertexIndex v : batch_.vertices(edge_))
+      for (const double number : graph_.value(v)) largest = std::max(largest, std::abs(number));
+    return kOperations * std::numeric_limits<double>::epsilon() * largest;
+  }
+
   /// Computes differences of fourth order.
   Eigen::MatrixXd differences(double step) {
     Eigen::MatrixXd jacobian(batch_.error_dimension(edge_), type_.tangent_size);
@@ -89,9 +98,10 @@ std::optional<NumericJacobian> numeric_jacobian(const Graph& graph, std::size_t 
                                                 std::size_t k) {
   constexpr double kLongest = 2e-3;
   ErrorAlongVertex error(graph, b, edge, graph.batch(b).vertices(edge)[k]);
-  const double size = 1 + error(0, 0).cwiseAbs().maxCoeff();
+  const double smooth = 1e-9 * kLongest * (1 + error(0, 0).cwiseAbs().maxCoeff());
+  const double uncertain = smooth + error.rounding();
   for (double step = kLongest; step > 1e-12; step /= 10) {
-    const double tolerance = 1e-9 * size * kLongest / step;
+    const double tolerance = uncertain / step;
     const Eigen::MatrixXd jacobian = error.differences(step / 2);
     if ((jacobian - error.differences(step)).cwiseAbs().maxCoeff() <= tolerance)
       return NumericJacobian{jacobian, tolerance};

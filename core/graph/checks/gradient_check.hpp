@@ -19,7 +19,7 @@ struct NumericJacobian {
 
 /// Returns the derivative of the error of an edge by the tangent of its vertex k, from differences
 /// of fourth order. The step is the first one, from 2e-3 downwards, for which half the step gives
-/// the same result. A jump of a component by a full turn comes from angle wrapping and is removed.
+/// the same result, but for rounding, which is that of the largest coordinate. A jump of a component by a full turn comes from angle wrapping and is removed.
 /// Empty if no step succeeds: there is no derivative, for example of a bearing at the landmark.
 [[nodiscard]] std::optional<NumericJacobian> numeric_jacobian(const Graph& graph, std::size_t batch,
                                                               std::size_t edge, std::size_t k);
