@@ -80,7 +80,8 @@ class Graduation {
  private:
   void find_candidates();
   void move_to_candidates(const std::vector<EdgePlace>& edges);
-  std::vector<EdgePlace> unsupported();
+  std::vector<EdgePlace> confirmed(std::span<const EdgePlace> edges);
+  Verdict approach_all();
   bool is_clean(const Verdict& with_all) const;
   bool begin_with_confirmed();
   void search();
@@ -696,16 +697,22 @@ bool Graduation::is_implausible(const Verdict& verdict) const {
                             1 - options_.inlier_probability;
 }
 
-// Returns the candidates that no other one close by confirms.
-std::vector<EdgePlace> Graduation::unsupported() {
-  std::vector<EdgePlace> confirmed;
-  for (const std::vector<EdgePlace>& group : wrong_places_->groups(graph_, candidates_))
-    if (group.size() > 1) confirmed.insert(confirmed.end(), group.begin(), group.end());
-  std::sort(confirmed.begin(), confirmed.end());
+// Returns those edges that others of them close by confirm, ascending.
+std::vector<EdgePlace> Graduation::confirmed(std::span<const EdgePlace> edges) {
   std::vector<EdgePlace> result;
-  std::set_difference(candidates_.begin(), candidates_.end(), confirmed.begin(), confirmed.end(),
-                      std::back_inserter(result));
+  for (const std::vector<EdgePlace>& group : wrong_places_->groups(graph_, edges))
+    if (group.size() > 1) result.insert(result.end(), group.begin(), group.end());
+  std::sort(result.begin(), result.end());
   return result;
+}
+
+// Makes some steps towards the minimum of all edges. With false ones there may be hundreds, and it is not needed.
+Verdict Graduation::approach_all() {
+  OptimizerOptions first = options_.optimizer;
+  first.max_iterations = std::min(kFirstIterations, first.max_iterations);
+  Verdict verdict;
+  verdict.summary = count(optimize(graph_, algorithm_, solver_, first));
+  return verdict;
 }
 
 // Tells whether the values of the graph, which are those of the verdict, fit all edges.
@@ -715,24 +722,33 @@ bool Graduation::is_clean(const Verdict& with_all) const {
 }
 
 // Judges by the minimum of those candidates that others close by confirm. Single false closures are outside then,
-// however many they are; those that come in groups are not.
+// however many they are; those that come in groups are not, and put right ones out.
 // @return this ends well; otherwise the values stay
 bool Graduation::begin_with_confirmed() {
   constexpr double kFewOutside = 0.01;  // from here all edges may be reached
+  constexpr double kFewGrouped = 0.05;  // of the outliers; if there are more, a wrong group may be inside
   const std::vector<double> start = graph_.values();
-  const std::vector<EdgePlace> doubtful = unsupported();
-  if (doubtful.size() == candidates_.size()) return false;
-  judge(without_joining(doubtful));
+  const std::vector<EdgePlace> inside_first = confirmed(candidates_);
+  if (inside_first.empty()) return false;
+  std::vector<EdgePlace> outside;
+  std::set_difference(candidates_.begin(), candidates_.end(), inside_first.begin(), inside_first.end(),
+                      std::back_inserter(outside));
+  judge(without_joining(outside));
   const auto few = static_cast<std::size_t>(kFewOutside * static_cast<double>(candidates_.size()));
   if (!best_.values.empty() && !interrupted_ && !is_slow_ && best_.outliers.size() <= few) {
     graph_.set_values(best_.values);
-    if (Verdict with_all = optimize_without({}); is_clean(with_all)) {
-      best_ = std::move(with_all);
+    if (is_clean(approach_all())) {
+      best_ = optimize_without({});
       return true;
     }
   }
   cross_examine();
-  const bool ends_well = !interrupted_ && !is_doubtful(0);
+  bool ends_well = !interrupted_ && !is_doubtful(0);
+  if (ends_well) {
+    graph_.set_values(best_.values);
+    const auto grouped = static_cast<double>(confirmed(best_.outliers).size());
+    ends_well = grouped <= kFewGrouped * static_cast<double>(best_.outliers.size());
+  }
   graph_.set_values(ends_well ? best_.values : start);
   return ends_well;
 }
@@ -747,11 +763,7 @@ GraduationResult Graduation::run() {
   Verdict with_all;
   // 2. Use all edges. If none is beyond its bound, there are no outliers. With outliers this
   //    minimum may be far away; the next step need not start exactly from it.
-  if (!dense_ && !begun) {
-    OptimizerOptions first = options_.optimizer;
-    first.max_iterations = std::min(kFirstIterations, first.max_iterations);
-    with_all.summary = count(optimize(graph_, algorithm_, solver_, first));
-  }
+  if (!dense_ && !begun) with_all = approach_all();
   const std::vector<double> of_all_edges = graph_.values();
   const bool hidden = !dense_ && !begun && beyond_bound().empty() && contradicted(trusted_).empty();
   const bool suspicious = begun ? !best_.outliers.empty() || !contradicted(trusted_).empty()
