@@ -61,6 +61,13 @@ double factorization_operations(const Graph& graph) {
   return sum;
 }
 
+/// Returns the edges that are not among others; both lists are ascending, and so is the result.
+std::vector<EdgePlace> difference(const std::vector<EdgePlace>& edges, const std::vector<EdgePlace>& others) {
+  std::vector<EdgePlace> result;
+  std::set_difference(edges.begin(), edges.end(), others.begin(), others.end(), std::back_inserter(result));
+  return result;
+}
+
 /// A split of the edges, and its minimum.
 struct Verdict {
   std::vector<EdgePlace> outliers;
@@ -83,6 +90,7 @@ class Graduation {
   std::vector<EdgePlace> confirmed(std::span<const EdgePlace> edges);
   Verdict approach_all();
   bool is_clean(const Verdict& with_all) const;
+  bool are_outliers_grouped();
   bool begin_with_confirmed();
   void search();
   template <typename Search>
@@ -123,6 +131,7 @@ class Graduation {
   void return_singly();
   void cross_examine();
   Verdict optimize_without(std::vector<EdgePlace> outliers);
+  void choose(std::vector<EdgePlace> outliers);
   std::vector<EdgePlace> most_accused(std::span<const EdgePlace> edges, const Verdict& verdict);
   std::vector<std::pair<double, EdgePlace>> accusations(std::span<const EdgePlace> edges,
                                                         const Verdict& verdict);
@@ -219,10 +228,7 @@ std::vector<EdgePlace> Graduation::beyond_bound() const {
 }
 
 std::vector<EdgePlace> Graduation::inside(const Verdict& verdict) const {
-  std::vector<EdgePlace> result;
-  std::set_difference(candidates_.begin(), candidates_.end(), verdict.outliers.begin(),
-                      verdict.outliers.end(), std::back_inserter(result));
-  return result;
+  return difference(candidates_, verdict.outliers);
 }
 
 // Returns the smallest power of two at which the loss is convex at every candidate.
@@ -425,6 +431,12 @@ Verdict Graduation::optimize_without(std::vector<EdgePlace> outliers) {
   return verdict;
 }
 
+// Makes a split the best one, whatever it costs.
+void Graduation::choose(std::vector<EdgePlace> outliers) {
+  best_ = optimize_without(std::move(outliers));
+  best_.cost = cost(best_);
+}
+
 // Returns the edges without which a split falls apart, although nothing contradicts them; trusted ones are preferred.
 std::vector<EdgePlace> Graduation::joining(std::span<const EdgePlace> outside, const Graph& kept) const {
   std::vector<EdgePlace> edges(outside.begin(), outside.end());
@@ -435,10 +447,7 @@ std::vector<EdgePlace> Graduation::joining(std::span<const EdgePlace> outside, c
 }
 
 std::vector<EdgePlace> Graduation::without_joining(const std::vector<EdgePlace>& outside) const {
-  const std::vector<EdgePlace> joins = joining(outside, without_edges(graph_, outside));
-  std::vector<EdgePlace> result;
-  std::set_difference(outside.begin(), outside.end(), joins.begin(), joins.end(), std::back_inserter(result));
-  return result;
+  return difference(outside, joining(outside, without_edges(graph_, outside)));
 }
 
 // Returns the edges that are outside after this minimum. Edges inside that exceed the bound go out.
@@ -658,11 +667,8 @@ bool Graduation::doubt_all(const std::vector<EdgePlace>& doubted, std::vector<Ed
 bool Graduation::doubt_for_agreeing() {
   const std::vector<EdgePlace> agreeing = agreeing_outliers();
   if (agreeing.empty() || interrupted_) return false;
-  std::vector<EdgePlace> outside;
-  std::set_difference(best_.outliers.begin(), best_.outliers.end(), agreeing.begin(), agreeing.end(),
-                      std::back_inserter(outside));
   graph_.set_values(best_.values);
-  const Verdict verdict = optimize_without(std::move(outside));
+  const Verdict verdict = optimize_without(difference(best_.outliers, agreeing));
   return doubt_ways(verdict);
 }
 
@@ -721,34 +727,34 @@ bool Graduation::is_clean(const Verdict& with_all) const {
          !is_implausible(with_all);
 }
 
+// Tells whether many outliers of the best split, whose values the graph gets, come in groups. They may be right, and
+// put out by a wrong group inside.
+bool Graduation::are_outliers_grouped() {
+  constexpr double kFewGrouped = 0.05;  // of the outliers
+  graph_.set_values(best_.values);
+  const auto grouped = static_cast<double>(confirmed(best_.outliers).size());
+  return grouped > kFewGrouped * static_cast<double>(best_.outliers.size());
+}
+
 // Judges by the minimum of those candidates that others close by confirm. Single false closures are outside then,
 // however many they are; those that come in groups are not, and put right ones out.
 // @return this ends well; otherwise the values stay
 bool Graduation::begin_with_confirmed() {
   constexpr double kFewOutside = 0.01;  // from here all edges may be reached
-  constexpr double kFewGrouped = 0.05;  // of the outliers; if there are more, a wrong group may be inside
   const std::vector<double> start = graph_.values();
   const std::vector<EdgePlace> inside_first = confirmed(candidates_);
   if (inside_first.empty()) return false;
-  std::vector<EdgePlace> outside;
-  std::set_difference(candidates_.begin(), candidates_.end(), inside_first.begin(), inside_first.end(),
-                      std::back_inserter(outside));
-  judge(without_joining(outside));
+  judge(without_joining(difference(candidates_, inside_first)));
   const auto few = static_cast<std::size_t>(kFewOutside * static_cast<double>(candidates_.size()));
   if (!best_.values.empty() && !interrupted_ && !is_slow_ && best_.outliers.size() <= few) {
     graph_.set_values(best_.values);
     if (is_clean(approach_all())) {
-      best_ = optimize_without({});
+      choose({});
       return true;
     }
   }
   cross_examine();
-  bool ends_well = !interrupted_ && !is_doubtful(0);
-  if (ends_well) {
-    graph_.set_values(best_.values);
-    const auto grouped = static_cast<double>(confirmed(best_.outliers).size());
-    ends_well = grouped <= kFewGrouped * static_cast<double>(best_.outliers.size());
-  }
+  const bool ends_well = !interrupted_ && !is_doubtful(0) && !are_outliers_grouped();
   graph_.set_values(ends_well ? best_.values : start);
   return ends_well;
 }
@@ -795,8 +801,7 @@ GraduationResult Graduation::run() {
   }
   if (best_.values.empty()) {
     if (!dense_) graph_.set_values(of_all_edges);
-    best_ = optimize_without(dense_ ? without_joining(candidates_) : std::vector<EdgePlace>{});
-    best_.cost = cost(best_);
+    choose(dense_ ? without_joining(candidates_) : std::vector<EdgePlace>{});
   }
   // 4. Doubt what was trusted: single edges, and all of them if they cost many of the others.
   if (suspicious && options_.doubts_trusted) {
@@ -804,8 +809,7 @@ GraduationResult Graduation::run() {
     if (hidden) {
       apart([&] {
         graph_.set_values(of_all_edges);
-        best_ = optimize_without({});
-        best_.cost = cost(best_);
+        choose({});
         doubt();
       });
     }
