@@ -30,8 +30,9 @@
 /// end, and as the odometry between them wants it. A place that is seen again is seen from several poses, but
 /// single false closures confirm nothing, however many they are.
 ///
-/// Where that does not end well, a split is grown from the trusted edges: those candidates return that agree with
-/// the rest, a few at a time, and first those whose place the rest knows best. That takes a small part of the time of
+/// Where that does not end well, or more than a twentieth of its outliers confirm each other too (a wrong group inside
+/// may have put them out), a split is grown from the trusted edges: those candidates return that agree with the rest,
+/// a few at a time, and first those whose place the rest knows best. That takes a small part of the time of
 /// narrowing, because false edges do not fill the factor. The loss is narrowed if the kept edges do not fit, or if some
 /// outliers agree on one motion, and more than may by chance: they may be right. It is not narrowed where a step with
 /// all edges would take many seconds. If more than a fifth of the candidates are then outside and agree so, narrowing
