@@ -115,6 +115,7 @@ void write_fix(const Fix& fix, TextBuilder& out) {
   or_dash(fix.chord_angle_rad);
   or_dash(fix.displacement_m);
   if (fix.told.quality != FixQuality::unknown) out.word(to_string(fix.told.quality));
+  if (!fix.smoothed_m.isZero(0)) out.word("smoothed").number(fix.smoothed_m[0]).number(fix.smoothed_m[1]);
   out.end_line();
 }
 

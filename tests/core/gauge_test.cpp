@@ -239,7 +239,7 @@ TEST_CASE("gauge: a point that is seen in one direction only is anchored in 1 of
   Graph graph;
   const VertexIndex origin = add_fixed_origin(graph, 0);
   const VertexIndex landmark = graph.add_vertex<VertexXy>(VertexId{1}, {3, 3});
-  graph.add_edge(EdgeBearingSe2Xy{{0.8}}, {origin, landmark}, Eigen::Matrix<double, 1, 1>(1));
+  graph.add_edge(EdgeBearingSe2Xy{0.8}, {origin, landmark}, Eigen::Matrix<double, 1, 1>(1));
   CHECK_THROWS_WITH(find_gauge(graph), Contains("vertex 1") && Contains("1 of 2"));
 }
 

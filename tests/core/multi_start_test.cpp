@@ -222,8 +222,10 @@ TEST_CASE("default start: what the gauge holds is no unknown of the chi2 that is
   const auto add_triangle = [](Graph& graph, int id) {
     std::vector<VertexIndex> poses;
     const std::array<Eigen::Vector3d, 3> places = {Eigen::Vector3d(0, 0, 0), {1, 0, 0}, {1, 1, 0}};
-    for (const Eigen::Vector3d& p : places)
-      poses.push_back(graph.add_vertex<VertexSe2>(VertexId(id++), {p[0] + id, p[1], p[2]}));
+    for (const Eigen::Vector3d& p : places) {
+      poses.push_back(graph.add_vertex<VertexSe2>(VertexId(id), {p[0] + id, p[1], p[2]}));
+      ++id;
+    }
     const Eigen::Matrix3d information = pose_information(0.1, 0.03);
     graph.add_edge(EdgeSe2{{1, 0, 0}}, {poses[0], poses[1]}, information);
     graph.add_edge(EdgeSe2{{0, 1, 0}}, {poses[1], poses[2]}, information);

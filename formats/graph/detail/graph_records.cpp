@@ -49,6 +49,27 @@ Frame read_frame(LineScanner& line) {
   return frame;
 }
 
+namespace {
+
+/// The words that may be left out: [quality] [smoothed x y].
+void read_told_and_smoothed(LineScanner& line, Fix& fix) {
+  std::string_view word = line.word();
+  if (const auto quality = fix_quality_from_string(word); quality && !word.empty()) {
+    fix.told.quality = *quality;
+    word = line.word();
+  }
+  if (word == "smoothed") {
+    fix.smoothed_m[0] = line.number({"GNSS", "smoothed", 0});
+    fix.smoothed_m[1] = line.number({"GNSS", "smoothed", 1});
+    word = line.word();
+  }
+  if (!word.empty())
+    line.fail("GNSS: expected the quality of a fix, such as single or fixed, or smoothed and its x and y, got " +
+              quote_word(word));
+}
+
+}  // namespace
+
 Fix read_fix(LineScanner& line) {
   constexpr std::string_view kTag = "GNSS";
   Fix fix;
@@ -76,13 +97,7 @@ Fix read_fix(LineScanner& line) {
   if (fix.reason.empty()) line.fail("GNSS: expected a reason, got the end of the line");
   fix.chord_angle_rad = line.optional_number({kTag, "chord_angle"}).value_or(nan);
   fix.displacement_m = line.optional_number({kTag, "displacement"}).value_or(nan);
-  if (const std::string_view quality = line.word(); !quality.empty()) {
-    const auto known_quality = fix_quality_from_string(quality);
-    if (!known_quality)
-      line.fail("GNSS: expected the quality of a fix, such as single or fixed, got " + quote_word(quality));
-    fix.told.quality = *known_quality;
-  }
-  line.end(kTag);
+  read_told_and_smoothed(line, fix);
   if (!is_positive_semidefinite(fix.covariance)) line.fail("GNSS: the covariance matrix is indefinite");
   return fix;
 }

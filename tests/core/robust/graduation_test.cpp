@@ -366,7 +366,7 @@ TEST_CASE("graduation: false closures in groups that agree among themselves are 
 // does not.
 TEST_CASE("graduation: false closures in groups are found even if they outnumber the right ones") {
   const TypeRegistry registry = full_registry();
-  for (const std::uint64_t seed : {1, 4}) {
+  for (const std::uint64_t seed : {1U, 4U}) {
     const Score score = graduate_and_score(reckoned_walk(60, seed), "walk from dead reckoning", registry);
     CHECK(score.precision >= 0.99);
     CHECK(score.recall == 1);
@@ -494,7 +494,7 @@ TEST_CASE(
 TEST_CASE(
     "graduation: where the minimum of all edges folds the graph, that of the trusted ones shows the way") {
   const TypeRegistry registry = full_registry();
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     Spoiled spoiled = spoiled_walk(130, false, seed);
     const Score score = graduate_and_score(spoiled, "walk, 130 random", registry);
     CHECK(score.precision > 0.99);

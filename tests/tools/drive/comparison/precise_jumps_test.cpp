@@ -52,7 +52,7 @@ const Eigen::Vector2d kWrong_m(0.6, -0.5);
 
 TEST_CASE("precise jumps: a wrong phase solution is found by its steps there and back") {
   const double antenna_ahead_m = GENERATE(0.0, 0.2);
-  const std::size_t first = GENERATE(100, 215);  // while it drives, and while it stands
+  const std::size_t first = GENERATE(100U, 215U);  // while it drives, and while it stands
   ReckonedFixes wrong = receiver(antenna_ahead_m);
   move(wrong, first, 300, kWrong_m);
   const std::vector<Jump> found = precise_jumps_of(wrong);
