@@ -64,8 +64,9 @@ void read_told_and_smoothed(LineScanner& line, Fix& fix) {
     word = line.word();
   }
   if (!word.empty())
-    line.fail("GNSS: expected the quality of a fix, such as single or fixed, or smoothed and its x and y, got " +
-              quote_word(word));
+    line.fail(
+        "GNSS: expected the quality of a fix, such as single or fixed, or smoothed and its x and y, got " +
+        quote_word(word));
 }
 
 }  // namespace
