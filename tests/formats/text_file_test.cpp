@@ -55,7 +55,12 @@ TEST_CASE("text file: what cannot be read says why") {
   CHECK_THROWS_MATCHES(read_text_file(missing), InputError,
                        Message(missing + ": cannot read: No such file or directory"));
   CHECK_THROWS_MATCHES(read_text_file(folder.string()), InputError,
-                       Message(folder.string() + ": cannot read: Is a directory"));
+                       Message(folder.string() + ": cannot read: Is a directory; name a file in it"));
+  const std::string drive = (folder / "drive.yaml").string();
+  write_file_atomically(drive, "name: x\n");
+  CHECK_THROWS_MATCHES(
+      read_text_file(folder.string()), InputError,
+      Message(folder.string() + ": cannot read: Is a directory; name the file in it: " + drive));
 }
 
 TEST_CASE("text file: what cannot be written says why and leaves nothing") {

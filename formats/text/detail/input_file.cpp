@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <system_error>
@@ -18,8 +19,21 @@
 
 namespace waymark::formats {
 
+namespace {
+
+/// What to do instead of naming a folder.
+std::string file_of(const std::string& folder) {
+  std::error_code unknown;
+  const std::filesystem::path drive = std::filesystem::path(folder) / "drive.yaml";
+  if (std::filesystem::exists(drive, unknown)) return "; name the file in it: " + drive.string();
+  return "; name a file in it";
+}
+
+}  // namespace
+
 void fail_read(const std::string& path, int error) {
-  throw InputError(fmt::format("{}: cannot read: {}", path, std::generic_category().message(error)));
+  throw InputError(fmt::format("{}: cannot read: {}{}", path, std::generic_category().message(error),
+                               error == EISDIR ? file_of(path) : ""));
 }
 
 /// A pipe that stays open while the program runs, and the bytes that came out of it.
