@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <waymark/core/linear/block_symbolic.hpp>
+#include <waymark/core/robust/detail/consistent_edges.hpp>
 #include <waymark/core/robust/detail/doubts.hpp>
 #include <waymark/core/robust/detail/growth.hpp>
 #include <waymark/core/robust/detail/narrowing.hpp>
@@ -60,6 +61,8 @@ class Graduation {
   bool are_outliers_grouped();
   void grow();
   void search();
+  bool is_confirmed();
+  void try_consistent();
   template <typename Search>
   void from_trusted(Search search);
   bool is_doubtful(double share) const;
@@ -209,6 +212,31 @@ void Graduation::grow() {
   }
 }
 
+// Tells whether most of what is kept is confirmed by others close by. The graph gets the values of the best split.
+bool Graduation::is_confirmed() {
+  if (splits_.best().values.empty()) return false;
+  graph_.set_values(splits_.best().values);
+  const std::vector<EdgePlace> kept = splits_.inside(splits_.best());
+  return 2 * splits_.confirmed(kept).size() > kept.size();
+}
+
+// Begins with the largest sets of candidates that are consistent with each other. Among few right ones, far from each
+// other, no single edge leads from a split that has some false ones inside to the one without. Where others close by
+// confirm them, they are found without, and a set that is consistent by chance may leave out a whole group of them,
+// which costs little more than one.
+void Graduation::try_consistent() {
+  constexpr double kFew = 5e5;  // candidates times vertices: each of them takes a minimum
+  const auto candidates = static_cast<double>(splits_.roles().candidates.size());
+  if (candidates * static_cast<double>(graph_.vertex_count()) > kFew || splits_.interrupted()) return;
+  if (is_confirmed()) return;
+  for (const std::vector<EdgePlace>& consistent : consistent_edges(splits_)) {
+    splits_.apart([&] {
+      splits_.judge(detail::difference(splits_.roles().candidates, consistent));
+      splits_.cross_examine();
+    });
+  }
+}
+
 void Graduation::doubt() {
   for (int round = 0; round < kMaxDoubts && doubt_trusted(splits_); ++round) {
     if (is_slow_ && !ends_badly(0))
@@ -293,6 +321,7 @@ GraduationResult Graduation::run() {
     if (!dense_) graph_.set_values(of_all_edges_);
     splits_.choose(dense_ ? splits_.without_joining(splits_.roles().candidates) : std::vector<EdgePlace>{});
   }
+  if (suspicious) try_consistent();
   // 4. Doubt what was trusted: single edges, and all of them if they cost many of the others.
   if (suspicious && options_.doubts_trusted) doubt_best();
   if (!splits_.interrupted() && !dense_ && options_.doubts_trusted && suspicious &&

@@ -30,6 +30,10 @@
 /// end, and as the odometry between them wants it. A place that is seen again is seen from several poses, but
 /// single false closures confirm nothing, however many they are.
 ///
+/// Few right closures, far from each other, confirm none of their neighbours. If a split keeps more candidates that
+/// nothing close by confirms than others, the largest sets of candidates that are consistent pair by pair
+/// (detail/consistent_edges.hpp) are judged too; not where their minima would take long.
+///
 /// Where that does not end well, or more than a twentieth of its outliers confirm each other too (a wrong group inside
 /// may have put them out), a split is grown from the trusted edges: those candidates return that agree with the rest,
 /// a few at a time, and first those whose place the rest knows best. That takes a small part of the time of

@@ -234,18 +234,25 @@ void Splits::return_singly() {
 }
 
 void Splits::cross_examine() {
-  constexpr int kMaxRounds = 20;
+  constexpr int kMaxTurns = 5;
   return_singly();
-  for (int round = 0; round < kMaxRounds && !interrupted_ && !best_.values.empty(); ++round) {
+  for (int turn = 0; turn < kMaxTurns && put_out_accused(); ++turn) return_singly();
+}
+
+bool Splits::put_out_accused() {
+  constexpr int kMaxRounds = 20;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    if (interrupted_ || best_.values.empty()) return round > 0;
     graph_.set_values(best_.values);
     std::vector<EdgePlace> outliers = most_accused(inside(best_), best_);
-    if (outliers.empty()) return;
+    if (outliers.empty()) return round > 0;
     outliers.insert(outliers.end(), best_.outliers.begin(), best_.outliers.end());
     std::sort(outliers.begin(), outliers.end());
     const double before = best_.cost;
     judge(std::move(outliers));
-    if (!(best_.cost < before)) return;
+    if (!(best_.cost < before)) return round > 0;
   }
+  return true;
 }
 
 std::vector<EdgePlace> Splits::contradicted(std::span<const EdgePlace> trusted) const {

@@ -132,6 +132,7 @@ class Splits {
   [[nodiscard]] std::vector<EdgePlace> still_out(const Verdict& verdict,
                                                  std::vector<EdgePlace>& returned) const;
   void return_singly();
+  bool put_out_accused();  // and returns whether it improved the best split
 
   Graph& graph_;  // with its own losses, and the values of the last verdict
   Algorithm& algorithm_;
