@@ -69,6 +69,14 @@ concept Edge = requires {
 
 class EdgeBatchBase;
 
+/// How many numbers a vertex type has.
+struct VertexSizes {
+  int value = 0;
+  int tangent = 0;
+
+  friend bool operator==(const VertexSizes&, const VertexSizes&) = default;
+};
+
 /// An edge type at run time. `arity` is the number of vertices, or kRuntimeArity if each edge has
 /// its own number.
 struct EdgeType {
@@ -78,6 +86,8 @@ struct EdgeType {
   std::string form;  ///< form of the error: "(t, theta)", "log", "position", ...
   int arity = 0;
   std::vector<std::string> vertex_tags;  ///< arity entries; empty for run-time arity
+  /// of the same vertices, as the edge was compiled with them; empty: it takes any
+  std::vector<VertexSizes> vertex_sizes;
   /// 0 for run-time arity: the sum of the tangent sizes of the vertices
   int error_dimension = 0;
   std::vector<FieldInfo> fields;  ///< without the information matrix, which every edge has
@@ -87,5 +97,8 @@ struct EdgeType {
   /// Returns how many numbers the field list has.
   [[nodiscard]] int field_size() const;
 };
+
+/// @throws UsageError if an edge was compiled with another vertex type of the tag of its k-th vertex
+void check_sizes(const EdgeType& edge, std::size_t k, const VertexType& vertex);
 
 }  // namespace waymark

@@ -211,6 +211,16 @@ void Graph::check_type(VertexIndex v, std::string_view tag) const {
                    std::string(tag));
 }
 
+void check_sizes(const EdgeType& edge, std::size_t k, const VertexType& vertex) {
+  const VertexSizes& compiled = edge.vertex_sizes[k];
+  if (compiled == VertexSizes{vertex.value_size, vertex.tangent_size}) return;
+  throw UsageError(edge.tag + " was compiled with a " + vertex.tag + " of " + std::to_string(compiled.value) +
+                   " numbers and " + std::to_string(compiled.tangent) +
+                   " degrees of freedom, and here it has " + std::to_string(vertex.value_size) + " and " +
+                   std::to_string(vertex.tangent_size) +
+                   ": two types have one tag; rename one of them, or build both with one header");
+}
+
 void Graph::check_vertices(const EdgeType& type, std::span<const VertexIndex> vertices) const {
   const auto n = vertices.size();
   if (type.arity != EdgeType::kRuntimeArity && n != static_cast<std::size_t>(type.arity)) {
@@ -224,6 +234,7 @@ void Graph::check_vertices(const EdgeType& type, std::span<const VertexIndex> ve
       throw UsageError(type.tag + ": vertex " + to_string(id(v)) + " is a " + vertex_type(v).tag +
                        ", expected a " + type.vertex_tags[k]);
     }
+    if (!type.vertex_sizes.empty()) check_sizes(type, k, vertex_type(v));
     for (std::size_t l = 0; l < k; ++l) {
       if (vertices[l] == v) throw UsageError(type.tag + ": vertex " + to_string(id(v)) + " is named twice");
     }

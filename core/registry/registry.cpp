@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <iterator>
+#include <string_view>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/guard.hpp>
@@ -30,17 +32,56 @@ const T* find(const RegistryTable<T>& table, std::string_view name) {
   return nullptr;
 }
 
+bool is_blank_or_control(unsigned char c) {
+  return c <= ' ' || c == 0x7f;
+}
+
 /// Names are words in files and on the command line.
 void check_name(const std::string& name, const std::string& origin, const char* kind) {
-  const auto is_wrong = [](unsigned char c) { return c <= ' ' || c == 0x7f; };
-  if (!name.empty() && name.front() != '#' && std::none_of(name.begin(), name.end(), is_wrong)) return;
+  if (!name.empty() && name.front() != '#' && std::none_of(name.begin(), name.end(), is_blank_or_control))
+    return;
   throw UsageError(std::string(kind) + " '" + name + "' of " + origin +
                    " cannot be registered: a name is a word without blanks that does not begin with '#'");
+}
+
+/// Words that begin a line of a .graph file and are no types (formats/README.md, Statements).
+constexpr std::string_view kStatements[] = {"GRAPH",  "FRAME",  "TIME",  "PROVENANCE", "LEVER",
+                                            "SOURCE", "STATES", "EDGES", "TYPE",       "STAMP",
+                                            "FIX",    "LOSS",   "GNSS",  "COVARIANCE"};
+
+void check_tag(const std::string& tag, const std::string& origin, const char* kind) {
+  if (std::find(std::begin(kStatements), std::end(kStatements), tag) == std::end(kStatements)) return;
+  throw UsageError(std::string(kind) + " '" + tag + "' of " + origin +
+                   " cannot be registered: this word is a statement of .graph files; rename it");
+}
+
+void check_vertex_of(const EdgeType& edge, const VertexType& vertex) {
+  for (std::size_t k = 0; k < edge.vertex_sizes.size(); ++k)
+    if (edge.vertex_tags[k] == vertex.tag) check_sizes(edge, k, vertex);
+}
+
+/// The TYPE line of a .graph file names the form of the error and the fields; it must be read again.
+void check_schema(const EdgeType& type, const std::string& origin) {
+  const auto fail = [&](const std::string& what) {
+    throw UsageError("edge type '" + type.tag + "' of " + origin + " cannot be registered: " + what);
+  };
+  if (std::any_of(type.form.begin(), type.form.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }))
+    fail("the form of its error has a control character");
+  for (std::size_t i = 0; i < type.fields.size(); ++i) {
+    const std::string& name = type.fields[i].name;
+    const bool is_word = !name.empty() && std::none_of(name.begin(), name.end(), [](unsigned char c) {
+      return is_blank_or_control(c) || c == ',' || c == ':';
+    });
+    if (!is_word) fail("its field '" + name + "' is no word without blanks, commas and colons");
+    for (std::size_t j = 0; j < i; ++j)
+      if (type.fields[j].name == name) fail("two of its fields are named '" + name + "'");
+  }
 }
 
 template <typename T>
 void add(RegistryTable<T>& table, T type, const std::string& origin, const char* kind) {
   check_name(name_of(type), origin, kind);
+  if constexpr (requires { type.tag; }) check_tag(type.tag, origin, kind);
   if constexpr (requires { type.options; }) require_sound_priors(type.name + " of " + origin, type.options);
   for (const Registered<T>& entry : table) {
     if (name_of(entry.type) != name_of(type)) continue;
@@ -96,12 +137,18 @@ StartType guarded_start(StartType type, const std::string& origin) {
 }  // namespace
 
 void TypeRegistry::add_vertex(VertexType type) {
+  for (const Registered<EdgeType>& edge : edges_) check_vertex_of(edge.type, type);
   add(vertices_, std::move(type), origin_, "vertex type");
 }
 void TypeRegistry::add_edge(EdgeType type) {
+  for (const Registered<VertexType>& vertex : vertices_) check_vertex_of(type, vertex.type);
+  check_schema(type, origin_);
   add(edges_, std::move(type), origin_, "edge type");
 }
 void TypeRegistry::add_loss(LossType type) {
+  check_name(type.name, origin_, "loss");
+  if (type.evaluate == nullptr)
+    throw UsageError("loss '" + type.name + "' of " + origin_ + " has no function");
   add(losses_, std::move(type), origin_, "loss");
 }
 void TypeRegistry::add_linear_solver(LinearSolverType type) {
@@ -124,6 +171,9 @@ void TypeRegistry::add_sensor_model(SensorModelType type) {
   add(sensor_models_, std::move(type), origin_, "sensor model");
 }
 void TypeRegistry::add_log_reader(LogReaderType type) {
+  check_name(type.name, origin_, "log reader");
+  if (type.reader == nullptr)
+    throw UsageError("log reader '" + type.name + "' of " + origin_ + " has no reader");
   add(log_readers_, std::move(type), origin_, "log reader");
 }
 void TypeRegistry::add_start(StartType type) {

@@ -1,10 +1,16 @@
 #include <waymark/plugins/heading/heading.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
+#include <waymark/core/base/error.hpp>
 #include <waymark/core/drive/kept_vertex.hpp>
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/plugin.hpp>
@@ -41,6 +47,66 @@ std::vector<OptionInfo> options() {
        NoisePrior{.mean = 60, .deviation = 1, .where_option = kOffset, .where_word = kWandering}}};
 }
 
+/// The vehicle's way from one fix to another one, long enough to have a direction.
+struct Chord {
+  Stamp middle;
+  double course_rad = 0;
+};
+
+/// Returns chords one after another, of the first receiver. @param fixes sorted by stamp
+std::vector<Chord> chords_of(std::span<const Fix> fixes) {
+  constexpr double kLeast_m = 10;
+  constexpr double kAccuracies = 5;
+  constexpr double kLongest_s = 10;
+  std::vector<Chord> chords;
+  std::size_t from = 0;
+  for (std::size_t i = 1; i < fixes.size(); ++i) {
+    if (fixes[i].source != fixes[from].source) continue;
+    const double dt = seconds_between(fixes[from].stamp, fixes[i].stamp);
+    const Eigen::Vector2d way = fixes[i].position - fixes[from].position;
+    if (dt <= kLongest_s && way.norm() < std::max(kLeast_m, kAccuracies * fixes[i].accuracy_m())) continue;
+    if (dt <= kLongest_s) chords.push_back({fixes[from].stamp.later(0.5 * dt), std::atan2(way.y(), way.x())});
+    from = i;
+  }
+  return chords;
+}
+
+/// Of the turns between the chords of fixes, those that the readings make as well, and those that they make to the
+/// other side.
+struct TurnsBesideFixes {
+  std::size_t same = 0;
+  std::size_t against = 0;
+};
+
+TurnsBesideFixes turns_beside(std::span<const Fix> fixes, const SensorTable& readings) {
+  constexpr double kLeast_rad = 20 * kDegree;
+  constexpr double kMost_rad = 150 * kDegree;  // beyond it, or in reverse, no side is told
+  constexpr double kLongest_s = 10;            // between the chords
+  constexpr double kNear_s = 1;
+  const auto reading_at = [&](Stamp stamp) -> std::optional<double> {
+    const auto after = std::lower_bound(readings.stamps.begin(), readings.stamps.end(), stamp);
+    if (after == readings.stamps.end() || std::abs(seconds_between(stamp, *after)) > kNear_s)
+      return std::nullopt;
+    return readings.at(static_cast<std::size_t>(after - readings.stamps.begin()), kHeading);
+  };
+  const auto is_turn = [&](double angle) {
+    return std::abs(angle) > kLeast_rad && std::abs(angle) < kMost_rad;
+  };
+  const std::vector<Chord> chords = chords_of(fixes);
+  TurnsBesideFixes turns;
+  for (std::size_t i = 1; i < chords.size(); ++i) {
+    if (seconds_between(chords[i - 1].middle, chords[i].middle) > kLongest_s) continue;
+    const auto before = reading_at(chords[i - 1].middle);
+    const auto after = reading_at(chords[i].middle);
+    if (!before || !after) continue;
+    const double of_fixes = wrap_angle(chords[i].course_rad - chords[i - 1].course_rad);
+    const double of_readings = wrap_angle(*after - *before);
+    if (!is_turn(of_fixes) || !is_turn(of_readings)) continue;
+    ++((of_fixes > 0) == (of_readings > 0) ? turns.same : turns.against);
+  }
+  return turns;
+}
+
 class Heading final : public SensorModel {
  public:
   explicit Heading(const CheckedOptions& options)
@@ -50,6 +116,19 @@ class Heading final : public SensorModel {
         offset_sigma_(kDegree * options.number("offset_sigma_deg")) {
     if (options.word(kOffset) == kWandering)
       wander_.emplace(kDegree * options.number("wander_sigma_deg"), options.number("wander_time"));
+  }
+
+  /// A compass that counts the other way round would bend the whole drive.
+  void check_drive(std::span<const Fix> fixes, const SensorTable& readings) const override {
+    constexpr std::size_t kFewest = 8;
+    constexpr std::size_t kTimes = 4;
+    const TurnsBesideFixes turns = turns_beside(fixes, readings);
+    if (turns.against < kFewest || turns.against < kTimes * turns.same) return;
+    throw InputError(
+        "the headings turn against the fixes, in " + std::to_string(turns.against) + " of " +
+        std::to_string(turns.against + turns.same) +
+        " turns: state the 'convention' of the column 'heading' the other way round (clockwise from "
+        "north, or counter-clockwise from east)");
   }
 
   void extend(const SensorInput& input, Graph& graph) override {

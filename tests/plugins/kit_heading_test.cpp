@@ -1,7 +1,9 @@
 // Sensor kit: absolute headings, plain and with a deviation to be estimated.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <vector>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/plugins/heading/heading.hpp>
@@ -198,6 +200,40 @@ TEST_CASE("heading: rows that make no sense are named, those outside the drive o
                     "heading: option 'offset' must be 'wandering' or 'constant' or 'off', got 'maybe'");
   CHECK_THROWS_WITH(registry().make_sensor_model("heading", {{"mounting", "3"}}),
                     Contains("heading: unknown option 'mounting'; did you mean 'mount_deg'?"));
+}
+
+TEST_CASE(
+    "heading: a compass that counts the other way round is refused before the drive, and no other one is") {
+  // Bends of 86 degrees to either side, five seconds each, at 10 m/s, with fixes of 2 m; then as much in reverse.
+  std::vector<Fix> fixes;
+  std::vector<double> headings;
+  Noise noise(5);
+  Eigen::Vector2d place(0, 0);
+  double heading = 0.4;
+  for (int second = 0; second < 400; ++second) {
+    const double speed = second < 200 ? 10 : -10;
+    const bool bends = second % 20 < 5 || (second % 20 >= 10 && second % 20 < 15);
+    heading = wrap_angle(heading + (bends ? (second % 60 < 30 ? 0.3 : -0.3) : 0.0));
+    place += speed * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+    Fix fix;
+    fix.stamp = kit_stamp(second);
+    fix.position = place + Eigen::Vector2d(noise(2), noise(2));
+    fix.covariance = 4 * Eigen::Matrix2d::Identity();
+    fixes.push_back(fix);
+    headings.push_back(heading);
+  }
+  const auto readings_with = [&](const std::function<double(double)>& reading) {
+    Readings readings("heading");
+    for (std::size_t i = 0; i < fixes.size(); ++i)
+      readings.add(fixes[i].stamp, {{"heading", wrap_angle(reading(headings[i]) + noise(3 * kDegree))}});
+    return readings.table();
+  };
+  const auto compass = registry().make_sensor_model("heading", {});
+  CHECK_NOTHROW(compass->check_drive(fixes, readings_with([](double h) { return h; })));
+  CHECK_NOTHROW(compass->check_drive(fixes, readings_with([](double h) { return h + 2; })));
+  CHECK_NOTHROW(compass->check_drive(fixes, readings_with([](double) { return 0.7; })));  // it is dead
+  CHECK_THROWS_WITH(compass->check_drive(fixes, readings_with([](double h) { return 0.5 * kPi - h; })),
+                    Contains("the headings turn against the fixes") && Contains("'convention'"));
 }
 
 }  // namespace kit_heading_test

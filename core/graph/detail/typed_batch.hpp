@@ -537,6 +537,9 @@ template <Edge E>
   type.error_dimension = E::kErrorDimension;
   [&]<std::size_t... K>(std::index_sequence<K...>) {
     (type.vertex_tags.emplace_back(std::string_view(E::Vertices::template Type<K>::kTag)), ...);
+    (type.vertex_sizes.push_back(
+         {E::Vertices::template Type<K>::kValueSize, E::Vertices::template Type<K>::kTangentSize}),
+     ...);
   }
   (std::make_index_sequence<E::Vertices::kSize>());
   if constexpr (requires { E::kRelative; }) type.relative = E::kRelative;

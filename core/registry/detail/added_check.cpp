@@ -51,6 +51,8 @@ std::string AddedCheck::flaw_of_edges(const Graph& graph, std::size_t b) const {
     const std::string flaw =
         all_finite(fields) ? flaw_of_information(batch.information(edge)) : "a number of it is not finite";
     if (!flaw.empty()) return edge_name(graph, b, edge) + ": " + flaw;
+    if (const Loss* loss = batch.loss(edge); loss != nullptr && loss->evaluate == nullptr)
+      return edge_name(graph, b, edge) + ": its loss '" + loss->name + "' has no function";
   }
   return "";
 }

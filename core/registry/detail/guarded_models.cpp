@@ -1,9 +1,14 @@
 #include <waymark/core/registry/detail/guarded_models.hpp>
 
+#include <cmath>
+#include <span>
 #include <utility>
+#include <vector>
 
+#include <waymark/core/base/error.hpp>
 #include <waymark/core/base/guard.hpp>
 #include <waymark/core/registry/detail/added_check.hpp>
+#include <waymark/core/system/normal_equations.hpp>
 
 namespace waymark {
 namespace {
@@ -24,9 +29,20 @@ class GuardedModel : public Model {
   template <typename Input>
   void extend_graph(const Input& input, Graph& graph) {
     const detail::AddedCheck added(graph);
-    call([&](Model& model) { model.extend(input, graph); });
+    call([&](Model& model) {
+      try {
+        model.extend(input, graph);
+      } catch (const UsageError& error) {  // of the graph, which the model uses
+        if (who_.origin == "waymark") throw;
+        throw PluginError(who_.text() + ": " + error.what(), who_.name);
+      }
+    });
     const std::string flaw = added.flaw(graph);
     if (!flaw.empty()) throw PluginError(who_.text() + ": added " + flaw, who_.name);
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw PluginError(who_.text() + ": " + what, who_.name);
   }
 
  private:
@@ -69,11 +85,18 @@ class GuardedAlgorithm final : public GuardedModel<Algorithm> {
  public:
   using GuardedModel::GuardedModel;
   void reset() override {
+    has_retreated_ = false;
     call([](Algorithm& model) { model.reset(); });
   }
   [[nodiscard]] ProposalStatus propose(const NormalEquations& equations, LinearSolver& solver,
                                        double decrement_bound, Step& step) override {
-    return call([&](Algorithm& model) { return model.propose(equations, solver, decrement_bound, step); });
+    const ProposalStatus status =
+        call([&](Algorithm& model) { return model.propose(equations, solver, decrement_bound, step); });
+    if (status == ProposalStatus::ok) require_sound(step, equations.gradient().size(), decrement_bound);
+    if (status == ProposalStatus::retreat && has_retreated_)
+      fail("goes back to the lowest chi2 again without a step between");
+    has_retreated_ = status == ProposalStatus::retreat;
+    return status;
   }
   [[nodiscard]] bool acceptable(double gain_ratio) const override {
     return call([&](const Algorithm& model) { return model.acceptable(gain_ratio); });
@@ -84,6 +107,21 @@ class GuardedAlgorithm final : public GuardedModel<Algorithm> {
   void rejected(const Step& step, double gain_ratio) override {
     call([&](Algorithm& model) { model.rejected(step, gain_ratio); });
   }
+
+ private:
+  /// The loop takes a step as it is, and believes what it promises.
+  void require_sound(const Step& step, Eigen::Index unknowns, double decrement_bound) const {
+    if (step.delta.size() != unknowns)
+      fail("proposed a step of " + std::to_string(step.delta.size()) + " numbers for " +
+           std::to_string(unknowns) + " unknowns");
+    if (!step.delta.allFinite()) fail("proposed a step that is not finite");
+    if (std::isnan(step.predicted_decrease) || step.predicted_decrease < -decrement_bound)
+      fail("proposed a step that raises chi2 by its own model; check its sign");
+    if (step.full_newton && !(step.newton_decrement >= -decrement_bound))
+      fail("tells a Newton decrement below 0, or none, with a full Newton step; check its sign");
+  }
+
+  bool has_retreated_ = false;
 };
 
 class GuardedSolver final : public GuardedModel<LinearSolver> {
@@ -96,7 +134,9 @@ class GuardedSolver final : public GuardedModel<LinearSolver> {
     return call([&](LinearSolver& model) { return model.factorize(values); });
   }
   void solve(std::span<const double> b, std::span<double> x) override {
+    right_.assign(b.begin(), b.end());  // x may be in its place
     call([&](LinearSolver& model) { model.solve(b, x); });
+    require_sound(x);
   }
   void set_threads(ThreadPool* threads) override {
     call([&](LinearSolver& model) { model.set_threads(threads); });
@@ -107,6 +147,20 @@ class GuardedSolver final : public GuardedModel<LinearSolver> {
   [[nodiscard]] std::string description() const override {
     return call([](const LinearSolver& model) { return model.description(); });
   }
+
+ private:
+  /// A positive definite matrix has b^T H^-1 b > 0.
+  void require_sound(std::span<const double> x) const {
+    constexpr double kRounding = 1e-6;  // of b and x, where H is nearly singular
+    const auto n = static_cast<Eigen::Index>(x.size());
+    const Eigen::Map<const Eigen::VectorXd> solution(x.data(), n);
+    const Eigen::Map<const Eigen::VectorXd> right(right_.data(), n);
+    if (!solution.allFinite()) fail("solved H x = b by an x that is not finite");
+    if (solution.dot(right) < -kRounding * solution.norm() * right.norm())
+      fail("solved H x = b by an x with b^T x < 0, although H is positive definite; check its sign");
+  }
+
+  std::vector<double> right_;
 };
 
 /// A factory that returns nothing is a defect of its plugin.

@@ -56,6 +56,23 @@ std::vector<Run> runs_of(std::span<const OdometrySample> odometry, ReadingOf cha
   return runs;
 }
 
+/// Returns the runs of 5 s and more at rest by speeds that differ from sample to sample.
+std::vector<Run> noisy_rests_of(std::span<const OdometrySample> odometry) {
+  std::vector<Run> runs;
+  const auto rests = [&](std::size_t i) { return std::abs(odometry[i].speed_mps) < kMoves; };
+  for (std::size_t i = 0; i < odometry.size(); ++i) {
+    if (!rests(i)) continue;
+    Run run{i, i};
+    while (run.last + 1 < odometry.size() && rests(run.last + 1)) ++run.last;
+    i = run.last;
+    const auto samples = run.of(odometry);
+    if (seconds_between(samples.front().stamp, samples.back().stamp) >= kShortestStandstill_s &&
+        !all_repeat(samples, &OdometrySample::speed_mps))
+      runs.push_back(run);
+  }
+  return runs;
+}
+
 /// Returns from how many samples on a run of one reading is a failure: five times the longest one of a
 /// vehicle that moves, those of `runs` apart. Empty if readings do not normally differ from sample to sample.
 std::optional<std::size_t> unusual_run(std::span<const OdometrySample> odometry, const std::vector<Run>& runs,
@@ -357,6 +374,36 @@ bool stood(const LaidOdometry& laid, const FrozenOdometry& frozen, Stamp end) {
   return displacement_m && *displacement_m < kShare * frozen.distance_m;
 }
 
+/// The odometry laid on the fixes, which takes time, once it is asked for.
+class LaidWhenAsked {
+ public:
+  LaidWhenAsked(std::span<const OdometrySample> odometry, const std::vector<Fix>& fixes)
+      : odometry_(odometry), fixes_(fixes) {}
+  const LaidOdometry& get() {
+    if (!laid_) laid_.emplace(odometry_, fixes_);
+    return *laid_;
+  }
+
+ private:
+  std::span<const OdometrySample> odometry_;
+  const std::vector<Fix>& fixes_;
+  std::optional<LaidOdometry> laid_;
+};
+
+/// Adds the times in which fixes contradict the speed of samples. @param may_stand by all of their readings
+void add_contradicted(std::span<const OdometrySample> samples, std::span<const Fix> during, bool may_stand,
+                      LaidWhenAsked& laid, std::vector<FrozenOdometry>& found) {
+  if (may_stand && come_back(during)) return;
+  const OdometrySample& first = samples.front();
+  for (const std::vector<Contradiction>& row : contradictions_of(during, std::abs(first.speed_mps))) {
+    std::optional<FrozenOdometry> frozen = judged(row, during, first, samples.back());
+    if (!frozen) continue;
+    if (may_stand && stood(laid.get(), *frozen, samples.back().stamp)) continue;
+    frozen->with_turns = all_repeat(within(samples, *frozen), &OdometrySample::yaw_rate_radps);
+    found.push_back(*frozen);
+  }
+}
+
 /// Finds times of one speed.
 void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vector<Fix>& fixes,
                         bool is_derived, std::vector<FrozenOdometry>& found) {
@@ -364,7 +411,7 @@ void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vec
   const std::optional<std::size_t> unusual = unusual_run(odometry, runs, &OdometrySample::speed_mps);
   const std::optional<std::size_t> unusual_turns = unusual_run(
       odometry, runs_of(odometry, &OdometrySample::yaw_rate_radps), &OdometrySample::yaw_rate_radps);
-  std::optional<LaidOdometry> laid;
+  LaidWhenAsked laid(odometry, fixes);
   for (const Run& run : runs) {
     const auto samples = run.of(odometry);
     const OdometrySample& first = samples.front();
@@ -384,17 +431,27 @@ void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vec
                        way_of(during).steps_m, true, with_turns});
       continue;
     }
-    if (duration_of(samples) < kShortestStandstill_s) continue;
-    const bool may_stand = !with_turns && all_at_rest(samples);
-    if (may_stand && come_back(during)) continue;
-    for (const std::vector<Contradiction>& row : contradictions_of(during, std::abs(first.speed_mps))) {
-      std::optional<FrozenOdometry> frozen = judged(row, during, first, samples.back());
-      if (!frozen) continue;
-      if (may_stand && !laid) laid.emplace(odometry, fixes);
-      if (may_stand && stood(*laid, *frozen, samples.back().stamp)) continue;
-      frozen->with_turns = all_repeat(within(samples, *frozen), &OdometrySample::yaw_rate_radps);
-      found.push_back(*frozen);
-    }
+    if (duration_of(samples) >= kShortestStandstill_s)
+      add_contradicted(samples, during, !with_turns && all_at_rest(samples), laid, found);
+  }
+  // A speed that reads noise where it should read the motion, or 0 on a ferry.
+  for (const Run& run : noisy_rests_of(odometry)) {
+    const auto samples = run.of(odometry);
+    std::vector<FrozenOdometry> contradicted;
+    add_contradicted(samples, within(fixes, samples.front().stamp, samples.back().stamp),
+                     all_at_rest(samples), laid, contradicted);
+    if (contradicted.empty()) continue;
+    // What it reads between two such times is worth as little.
+    FrozenOdometry rest = contradicted.front();
+    rest.to = contradicted.back().to;
+    rest.distance_m =
+        std::accumulate(contradicted.begin(), contradicted.end(), 0.0,
+                        [](double sum, const FrozenOdometry& part) { return sum + part.distance_m; });
+    rest.at_rest = true;
+    const bool is_known = std::any_of(found.begin(), found.end(), [&](const FrozenOdometry& other) {
+      return other.from <= rest.to && rest.from <= other.to;
+    });
+    if (!is_known) found.push_back(rest);
   }
 }
 
@@ -447,12 +504,13 @@ void assume_motion_of_fixes(std::span<const FrozenOdometry> frozen, std::span<co
 }
 
 std::string warning_of(const FrozenOdometry& frozen, Stamp start) {
-  const std::string readings =
-      frozen.with_speed
-          ? fmt::format("{:.3g} m/s{}", frozen.speed_mps, frozen.with_turns ? " and its yaw rate" : "")
-          : fmt::format("a yaw rate of {:.3g} rad/s", frozen.yaw_rate_radps);
+  const std::string readings = frozen.at_rest ? fmt::format("reads speeds below {:.1f} m/s", kMoves)
+                               : frozen.with_speed
+                                   ? fmt::format("repeats {:.3g} m/s{}", frozen.speed_mps,
+                                                 frozen.with_turns ? " and its yaw rate" : "")
+                                   : fmt::format("repeats a yaw rate of {:.3g} rad/s", frozen.yaw_rate_radps);
   return fmt::format(
-      "the odometry repeats {} from {:.1f} s to {:.1f} s after its start, while the fixes move by "
+      "the odometry {} from {:.1f} s to {:.1f} s after its start, while the fixes move by "
       "{:.0f} m: its readings are left out there, and the motion of the fixes is assumed with the noise of a "
       "gap; check the log of the odometry, and the clocks of both logs",
       readings, seconds_between(start, frozen.from), seconds_between(start, frozen.to), frozen.distance_m);

@@ -19,6 +19,8 @@ struct FrozenOdometry {
   double distance_m = 0;      ///< between the fixes in this time
   bool with_speed = false;    ///< the samples repeat their speed
   bool with_turns = false;    ///< the samples repeat their yaw rate
+  bool at_rest =
+      false;  ///< the samples do not repeat a speed; all of them are those of a vehicle that stands
 };
 
 /// Finds them with the fixes of the first receiver that are not withheld.
@@ -36,7 +38,9 @@ struct FrozenOdometry {
 /// four chords in a row, of 2 to 10 s each. Every chord differs from the odometry's distance by at least 5 m, 1 m/s and three
 /// sigmas of the fixes; all of them together by at least 30 m and ten sigmas. The chords have a
 /// common direction, within 60 degrees from each to the next: fixes of a standing receiver wander
-/// without one. If the receiver measures its speed, this speed must contradict the odometry too.
+/// without one. If the receiver measures its speed, this speed must contradict the odometry too. Or the speed is
+/// below 0.5 m/s in each sample for 5 s or more, and the fixes contradict its first one so: wheels whose sensor
+/// fails read noise, and so do those of a vehicle on a ferry. Such a time lasts from the first to the last contradiction.
 /// @param odometry sorted by stamp
 /// @param fixes sorted by stamp
 /// @param from_wheels the yaw rate is known to come from wheels or steering; otherwise readings at rest tell it

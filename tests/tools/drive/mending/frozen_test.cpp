@@ -106,6 +106,27 @@ TEST_CASE("frozen: a yaw rate that is alive is kept") {
   CHECK(scene.odometry[450].speed_mps == Approx(speed_at(45)).margin(0.5));
 }
 
+TEST_CASE(
+    "frozen: a speed that reads noise about 0 while the fixes move is found too, and a noisy stop is none") {
+  const auto noise = [](std::size_t i) { return std::abs(0.1 * std::sin(2.3 * static_cast<double>(i))); };
+  Scene failing = frozen_at(0, 0);
+  for (std::size_t i = 300; i <= 600; ++i) {
+    failing.odometry[i].speed_mps = noise(i);
+    failing.odometry[i].yaw_rate_radps = yaw_rate_at(0.1 * static_cast<double>(i));
+  }
+  const std::vector<FrozenOdometry> found = find_frozen_odometry(failing.odometry, failing.fixes);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].from.seconds() == Approx(30).margin(2.1));
+  CHECK(found[0].to.seconds() == Approx(60).margin(2.1));
+  CHECK(found[0].at_rest);
+  CHECK_THAT(warning_of(found[0], Stamp::from_seconds(10)),
+             Catch::Contains("reads speeds below 0.5 m/s from "));
+
+  Scene stop = standing([](int second) { return Eigen::Vector2d(std::sin(second), 0.2 * (second - 30)); });
+  for (std::size_t i = 300; i <= 600; ++i) stop.odometry[i].speed_mps = noise(i);
+  CHECK(find_frozen_odometry(stop.odometry, stop.fixes).empty());
+}
+
 TEST_CASE("frozen: while a gyro is alive, fixes that go away from a stop and half back prove nothing") {
   const auto bow = [](int second) {
     return Eigen::Vector2d(0, 300 * std::sin(0.85 * std::numbers::pi * (second - 30) / 30.0));

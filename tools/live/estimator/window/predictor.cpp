@@ -7,6 +7,14 @@
 #include <waymark/core/graph/detail/weighed_edge.hpp>
 
 namespace waymark::live {
+namespace {
+
+/// Tells whether the edges determine all of the vertices.
+bool is_determined(const Eigen::LDLT<Eigen::MatrixXd>& factor) {
+  return factor.info() == Eigen::Success && factor.vectorD().minCoeff() > 0;
+}
+
+}  // namespace
 
 /// Quadratic model over the known vertices and the new ones.
 struct Predictor::Joint {
@@ -71,6 +79,12 @@ void Predictor::add_edge(const Graph& graph, std::size_t batch, std::size_t edge
   }
 }
 
+bool Predictor::touches_unknown(const Graph& graph, std::size_t batch, std::size_t edge, const Joint& joint) {
+  const std::span<const VertexIndex> vertices = graph.batch(batch).vertices(edge);
+  return std::any_of(vertices.begin(), vertices.end(),
+                     [&](VertexIndex v) { return !graph.fixed(v) && joint.row_of(v) < 0; });
+}
+
 /// Leaves out states that have left the window, which happens if no solution came before.
 void Predictor::forget_dropped(const Graph& graph) {
   std::vector<VertexId> kept;
@@ -103,7 +117,8 @@ void Predictor::follow(Graph& graph, VertexIndex pose) {
   for (const VertexId id : vertices_) joint.add(graph, *graph.find(id));
   joint.information.topLeftCorner(known, known) =
       covariance_.ldlt().solve(Eigen::MatrixXd::Identity(known, known));
-  // Of the vertices of the new edges, the new ones join; others that are not known yet are as they are.
+  // Of the vertices of the new edges, the new ones join. How well others are known is not told here: an edge to one, a
+  // landmark or the bias of a receiver, waits for the next solution, unless nothing else says where the pose is.
   const VertexIndex newest = pose;
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
     const std::size_t first = b < edges_.size() ? edges_[b] : 0;
@@ -116,11 +131,18 @@ void Predictor::follow(Graph& graph, VertexIndex pose) {
         first);
   }
   if (joint.row_of(pose) < 0) return;
+  Joint of_unknown = joint;  // with those edges as well that touch what is not known here
   for (std::size_t b = 0; b < graph.batch_count(); ++b)
-    for (std::size_t e = b < edges_.size() ? edges_[b] : 0; e < graph.batch(b).size(); ++e)
-      add_edge(graph, b, e, joint);
-  const Eigen::LDLT<Eigen::MatrixXd> factor(joint.information);
-  if (factor.info() != Eigen::Success || !factor.isPositive()) {
+    for (std::size_t e = b < edges_.size() ? edges_[b] : 0; e < graph.batch(b).size(); ++e) {
+      add_edge(graph, b, e, of_unknown);
+      if (!touches_unknown(graph, b, e, joint)) add_edge(graph, b, e, joint);
+    }
+  Eigen::LDLT<Eigen::MatrixXd> factor(joint.information);
+  if (!is_determined(factor)) {
+    joint = std::move(of_unknown);
+    factor.compute(joint.information);
+  }
+  if (!is_determined(factor)) {
     mark(graph);
     return;
   }

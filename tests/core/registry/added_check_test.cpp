@@ -53,6 +53,23 @@ TEST_CASE("added: what is usable enters, also without information on an axis or 
         }).edge_count() == 2);
 }
 
+TEST_CASE("added: what the graph refuses, and a loss without a function, are told with plugin and model") {
+  const auto is_of_plugin = Contains("plugin 'uwb': sensor model 'ranges': ");
+  CHECK_THROWS_AS(extended([](Graph& graph) {
+                    graph.add_vertex<VertexSe2>(VertexId{7}, {0, 0, 0});
+                  }),
+                  PluginError);
+  CHECK_THROWS_WITH(extended([](Graph& graph) {
+                      graph.add_vertex<VertexSe2>(VertexId{7}, {0, 0, 0});
+                    }),
+                    is_of_plugin && Contains("vertex 7 exists already"));
+  CHECK_THROWS_WITH(extended([](Graph& graph) {
+                      add_fix(graph, 1, Eigen::Matrix2d::Identity());
+                      graph.batch(0).set_loss(1, Loss{"mine", nullptr, 1});
+                    }),
+                    is_of_plugin && Contains("loss 'mine' has no function"));
+}
+
 TEST_CASE("added: numbers that are not finite are told with plugin, model and edge") {
   CHECK_THROWS_MATCHES(
       extended([](Graph& graph) { add_fix(graph, std::nan(""), Eigen::Matrix2d::Identity()); }), PluginError,

@@ -48,6 +48,10 @@ std::string graph_text(const TypeRegistry& registry, const char* modeling) {
 
 int entered = 0;
 
+LossValue half(double squared, double) {
+  return {0.5 * squared, 0.5, 0};
+}
+
 PluginDescriptor sound_descriptor() {
   return describe_plugin("sample", "1.0");
 }
@@ -115,14 +119,14 @@ TEST_CASE(
 
 TEST_CASE("plugins: a registration that fails half-way leaves no types behind") {
   const PluginEntry throws_error = [](TypeRegistry& extended) {
-    extended.add_loss({"half", nullptr, ""});
+    extended.add_loss({"half", &half, ""});
     throw UsageError("out of paper");
   };
   TypeRegistry registry = bare_registry();
   CHECK_THROWS_WITH(enter_plugin(sound_descriptor(), throws_error, "sample.so", registry),
                     Contains("sample.so") && Contains("plugin 'sample'") && Contains("out of paper"));
   const PluginEntry throws_number = [](TypeRegistry& extended) {
-    extended.add_loss({"half", nullptr, ""});
+    extended.add_loss({"half", &half, ""});
     throw 42;
   };
   CHECK_THROWS_WITH(enter_plugin(sound_descriptor(), throws_number, "sample.so", registry),
@@ -171,6 +175,58 @@ TEST_CASE("registry: all tags and names are found again and belong to somebody")
   CHECK(registry.find_edge("EDGE_NOBODY") == nullptr);
   CHECK(registry.find_vertex("VERTEX_NOBODY") == nullptr);
   CHECK(registry.find_loss("nobody") == nullptr);
+}
+
+namespace {
+
+/// A point with a third number, under the tag of the registered one.
+struct OtherXy : VertexXy {
+  static constexpr int kValueSize = 3;
+  static constexpr int kTangentSize = 3;
+};
+
+}  // namespace
+
+TEST_CASE("registry: an edge that was compiled with another vertex type of the same tag is refused") {
+  EdgeType edge = make_edge_type<EdgeSe2Xy>();
+  REQUIRE(edge.vertex_sizes == std::vector<VertexSizes>{{3, 3}, {2, 2}});
+  edge.tag = "EDGE_OTHER";
+  edge.vertex_sizes[1] = {OtherXy::kValueSize, OtherXy::kTangentSize};
+  const std::string told =
+      "EDGE_OTHER was compiled with a VERTEX_XY of 3 numbers and 3 degrees of freedom, and here "
+      "it has 2 and 2: two types have one tag; rename one of them, or build both with one header";
+  TypeRegistry registry = bare_registry();
+  CHECK_THROWS_WITH(registry.add_edge(edge), told);
+  TypeRegistry edge_first;
+  edge_first.add_edge(edge);
+  CHECK_THROWS_WITH(edge_first.add_vertex(make_vertex_type<VertexXy>()), told);
+  Graph graph;
+  graph.add_vertex<VertexSe2>(VertexId{0}, {0, 0, 0});
+  graph.add_vertex<VertexXy>(VertexId{1}, {1, 0});
+  const std::array<VertexIndex, 2> vertices = {0, 1};
+  const std::array<double, 2> fields = {1, 0};
+  CHECK_THROWS_WITH(graph.add_edge(edge, vertices, fields, Eigen::Matrix2d::Identity()), told);
+}
+
+TEST_CASE("registry: what a .graph file could not tell again, and what cannot be called, is refused") {
+  TypeRegistry registry = bare_registry();
+  const auto with = [](auto change) {
+    EdgeType edge = make_edge_type<EdgeSe2Xy>();
+    edge.tag = "EDGE_OWN";
+    change(edge);
+    return edge;
+  };
+  CHECK_THROWS_WITH(registry.add_edge(with([](EdgeType& e) { e.tag = "FIX"; })),
+                    Contains("statement of .graph files"));
+  CHECK_THROWS_WITH(registry.add_edge(with([](EdgeType& e) { e.form = "a\nb"; })),
+                    Contains("control character"));
+  CHECK_THROWS_WITH(registry.add_edge(with([](EdgeType& e) { e.fields[0].name = "my z,:"; })),
+                    Contains("no word"));
+  CHECK_THROWS_WITH(registry.add_edge(with([](EdgeType& e) { e.fields.push_back(e.fields[0]); })),
+                    Contains("two of its fields"));
+  CHECK_THROWS_WITH(registry.add_loss({"mine", nullptr, ""}), Contains("has no function"));
+  CHECK_THROWS_WITH(registry.add_log_reader({"mine", ""}), Contains("has no reader"));
+  CHECK_NOTHROW(registry.add_edge(with([](EdgeType&) {})));
 }
 
 }  // namespace plugin_loader_test
