@@ -1,5 +1,6 @@
 #include <waymark/core/base/error.hpp>
 
+#include <new>
 #include <utility>
 
 #include <waymark/core/base/guard.hpp>
@@ -22,6 +23,9 @@ void throw_plugin_error(const std::string& who, std::string_view type) {
   } catch (const PluginError&) {
     throw;
   } catch (const std::exception& error) {
+    const bool is_ours = !who.starts_with("plugin ");
+    if (is_ours && dynamic_cast<const std::bad_alloc*>(&error) != nullptr)
+      throw;  // memory is short for everybody
     throw PluginError(who + ": threw: " + error.what(), std::string(type));
   } catch (...) {
     throw PluginError(who + ": threw something that is no std::exception", std::string(type));

@@ -32,9 +32,8 @@ class GuardedModel : public Model {
     call([&](Model& model) {
       try {
         model.extend(input, graph);
-      } catch (const UsageError& error) {  // of the graph, which the model uses
-        if (who_.origin == "waymark") throw;
-        throw PluginError(who_.text() + ": " + error.what(), who_.name);
+      } catch (const UsageError& error) {  // of the graph, which the model uses, or of its own
+        throw UsageError(who_.text() + ": " + error.what());
       }
     });
     const std::string flaw = added.flaw(graph);

@@ -58,7 +58,7 @@ TEST_CASE("added: what the graph refuses, and a loss without a function, are tol
   CHECK_THROWS_AS(extended([](Graph& graph) {
                     graph.add_vertex<VertexSe2>(VertexId{7}, {0, 0, 0});
                   }),
-                  PluginError);
+                  UsageError);
   CHECK_THROWS_WITH(extended([](Graph& graph) {
                       graph.add_vertex<VertexSe2>(VertexId{7}, {0, 0, 0});
                     }),
