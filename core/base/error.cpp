@@ -23,9 +23,8 @@ void throw_plugin_error(const std::string& who, std::string_view type) {
   } catch (const PluginError&) {
     throw;
   } catch (const std::exception& error) {
-    const bool is_ours = !who.starts_with("plugin ");
-    if (is_ours && dynamic_cast<const std::bad_alloc*>(&error) != nullptr)
-      throw;  // memory is short for everybody
+    const bool names_plugin = who.starts_with("plugin ");  // without one, memory is short for everybody
+    if (!names_plugin && dynamic_cast<const std::bad_alloc*>(&error) != nullptr) throw;
     throw PluginError(who + ": threw: " + error.what(), std::string(type));
   } catch (...) {
     throw PluginError(who + ": threw something that is no std::exception", std::string(type));

@@ -15,7 +15,7 @@ namespace WAYMARK_EXPORT waymark {
 [[noreturn]] void throw_plugin_error(const std::string& who, std::string_view type);
 
 /// Calls code of a plugin. The errors of error.hpp are passed on, because plugins throw them too for
-/// what users did wrong. Everything else becomes a PluginError.
+/// what users did wrong. Everything else becomes a PluginError, but a lack of memory where `who` names no plugin.
 /// @param who returns "plugin 'uwb': sensor 'uwb'"; it is called only for an error
 template <typename Who, typename Call>
 decltype(auto) guarded(const Who& who, std::string_view type, const Call& call) {

@@ -6,6 +6,7 @@
 #include <waymark/core/base/guard.hpp>
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/core/graph/gaussian_prior.hpp>
+#include <waymark/core/registry/detail/graph_statements.hpp>
 #include <waymark/core/registry/detail/guarded_models.hpp>
 #include <waymark/core/registry/detail/option_check.hpp>
 #include <waymark/core/registry/registry.hpp>
@@ -44,15 +45,21 @@ void check_name(const std::string& name, const std::string& origin, const char* 
                    " cannot be registered: a name is a word without blanks that does not begin with '#'");
 }
 
-/// Words that begin a line of a .graph file and are no types (formats/README.md, Statements).
-constexpr std::string_view kStatements[] = {"GRAPH",  "FRAME",  "TIME",  "PROVENANCE", "LEVER",
-                                            "SOURCE", "STATES", "EDGES", "TYPE",       "STAMP",
-                                            "FIX",    "LOSS",   "GNSS",  "COVARIANCE"};
-
 void check_tag(const std::string& tag, const std::string& origin, const char* kind) {
-  if (std::find(std::begin(kStatements), std::end(kStatements), tag) == std::end(kStatements)) return;
+  const auto& words = detail::kGraphStatements;
+  if (tag != "FIX" && std::find(std::begin(words), std::end(words), tag) == std::end(words)) return;
   throw UsageError(std::string(kind) + " '" + tag + "' of " + origin +
                    " cannot be registered: this word is a statement of .graph files; rename it");
+}
+
+/// What is missing would be called.
+void check_callable(const LossType& type, const std::string& origin) {
+  if (type.evaluate == nullptr)
+    throw UsageError("loss '" + type.name + "' of " + origin + " has no function");
+}
+void check_callable(const LogReaderType& type, const std::string& origin) {
+  if (type.reader == nullptr)
+    throw UsageError("log reader '" + type.name + "' of " + origin + " has no reader");
 }
 
 void check_vertex_of(const EdgeType& edge, const VertexType& vertex) {
@@ -82,6 +89,7 @@ template <typename T>
 void add(RegistryTable<T>& table, T type, const std::string& origin, const char* kind) {
   check_name(name_of(type), origin, kind);
   if constexpr (requires { type.tag; }) check_tag(type.tag, origin, kind);
+  if constexpr (requires { check_callable(type, origin); }) check_callable(type, origin);
   if constexpr (requires { type.options; }) require_sound_priors(type.name + " of " + origin, type.options);
   for (const Registered<T>& entry : table) {
     if (name_of(entry.type) != name_of(type)) continue;
@@ -146,9 +154,6 @@ void TypeRegistry::add_edge(EdgeType type) {
   add(edges_, std::move(type), origin_, "edge type");
 }
 void TypeRegistry::add_loss(LossType type) {
-  check_name(type.name, origin_, "loss");
-  if (type.evaluate == nullptr)
-    throw UsageError("loss '" + type.name + "' of " + origin_ + " has no function");
   add(losses_, std::move(type), origin_, "loss");
 }
 void TypeRegistry::add_linear_solver(LinearSolverType type) {
@@ -171,9 +176,6 @@ void TypeRegistry::add_sensor_model(SensorModelType type) {
   add(sensor_models_, std::move(type), origin_, "sensor model");
 }
 void TypeRegistry::add_log_reader(LogReaderType type) {
-  check_name(type.name, origin_, "log reader");
-  if (type.reader == nullptr)
-    throw UsageError("log reader '" + type.name + "' of " + origin_ + " has no reader");
   add(log_readers_, std::move(type), origin_, "log reader");
 }
 void TypeRegistry::add_start(StartType type) {

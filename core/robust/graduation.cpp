@@ -128,7 +128,8 @@ Verdict approach_all(Splits& splits) {
 }
 
 bool no_error_is_large(const Splits& splits) {
-  return splits.beyond_bound().empty() && splits.contradicted(splits.roles().trusted).empty();
+  return splits.beyond_bound(splits.roles().candidates).empty() &&
+         splits.contradicted(splits.roles().trusted).empty();
 }
 
 // Tells whether many outliers of the best split, whose values the graph gets, come in groups. They may be right, and

@@ -4,6 +4,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
+#include <waymark/core/registry/detail/graph_statements.hpp>
 #include <waymark/core/system/foreign_poses.hpp>
 #include <waymark/formats/graph/detail/graph_records.hpp>
 #include <waymark/formats/graph/detail/own_statements.hpp>
@@ -17,6 +18,8 @@
 
 namespace waymark::formats {
 namespace {
+
+using waymark::detail::kGraphStatements;
 
 constexpr std::size_t kExamples = 10;
 // so many are remembered; further ones are looked up each time
@@ -276,12 +279,12 @@ class GraphReader {
     last_batch_ = nullptr;
     if (is_toro()) {
       const bool is_other = registry_.find_vertex(tag) != nullptr || registry_.find_edge(tag) != nullptr ||
-                            is_one_of(tag, kOwnTags);
+                            is_one_of(tag, kGraphStatements);
       line.fail("unknown tag " + quote_word(tag) + "; a file of --input-format " +
                 std::string(to_string(format_)) + " has VERTEX2 and EDGE2" +
                 (is_other ? ", and this tag is of .graph or g2o: leave --input-format out" : ""));
     }
-    if (is_one_of(tag, kOwnTags)) {
+    if (is_one_of(tag, kGraphStatements)) {
       line.fail(join(tag, is_waymark_ ? "is only allowed in the first line"
                                       : "is only allowed in files whose first line is 'GRAPH 1'"));
     }
@@ -310,7 +313,7 @@ class GraphReader {
     for (const auto& edge : registry_.edges()) tags.emplace_back(edge.type.tag);
     tags.emplace_back("FIX");
     tags.emplace_back("GRAPH");
-    if (is_waymark_) tags.insert(tags.end(), std::begin(kOwnTags), std::end(kOwnTags));
+    if (is_waymark_) tags.insert(tags.end(), std::begin(kGraphStatements), std::end(kGraphStatements));
     return tags;
   }
 

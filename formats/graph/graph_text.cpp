@@ -1,3 +1,4 @@
+#include <waymark/core/registry/detail/graph_statements.hpp>
 #include <waymark/formats/graph/graph_text.hpp>
 
 #include <algorithm>
@@ -13,12 +14,15 @@
 namespace waymark::formats {
 namespace {
 
+using waymark::detail::kGraphStatements;
+
 bool is_known(std::string_view tag, const TypeRegistry& registry) {
   const auto is_among = [tag](const auto& tags) {
     return std::find(std::begin(tags), std::end(tags), tag) != std::end(tags);
   };
-  return registry.find_vertex(tag) != nullptr || registry.find_edge(tag) != nullptr || is_among(kOwnTags) ||
-         is_among(kToroTags) || is_of_space(tag) || tag == "FIX" || tag == "PARAMS_SE2OFFSET";
+  return registry.find_vertex(tag) != nullptr || registry.find_edge(tag) != nullptr ||
+         is_among(kGraphStatements) || is_among(kToroTags) || is_of_space(tag) || tag == "FIX" ||
+         tag == "PARAMS_SE2OFFSET";
 }
 
 /// Tells whether a line that begins within a piece of a graph begins with a known tag.

@@ -47,7 +47,7 @@ std::vector<std::vector<std::size_t>> largest_sets(const std::vector<Row>& agree
 // Marks those of the edges outside that agree with the others, and with what is inside, at its minimum.
 Row agreeing_with(Splits& splits, const std::vector<EdgePlace>& outside,
                   const std::vector<EdgePlace>& asked) {
-  const Verdict verdict = splits.optimize_without(outside);
+  (void)splits.optimize_without(outside);  // whose minimum the graph has now
   const Graph kept = without_edges(splits.graph(), outside);
   const std::vector<Innovation> innovation = innovations(splits.graph(), asked, Membership::outside, kept);
   Row result;

@@ -12,15 +12,13 @@ namespace waymark::detail {
 namespace {
 
 // Makes candidates of trusted edges if a split without some of them is cheaper. @return it is
-bool doubt_all(Splits& splits, const std::vector<EdgePlace>& doubted, std::vector<EdgePlace> outliers,
+bool doubt_all(Splits& splits, const std::vector<EdgePlace>& doubted, const std::vector<EdgePlace>& outliers,
                const Verdict& verdict) {
   if (outliers.empty() || splits.interrupted()) return false;
   EdgeRoles before = splits.roles();
   splits.move_to_candidates(doubted);
-  outliers.insert(outliers.end(), verdict.outliers.begin(), verdict.outliers.end());
-  std::sort(outliers.begin(), outliers.end());
   const double cost = splits.best().cost;
-  splits.judge(std::move(outliers));
+  splits.judge(united(outliers, verdict.outliers));
   splits.graph().set_values(splits.best().values);
   if (splits.best().cost < cost) return true;
   splits.set_roles(std::move(before));
@@ -97,9 +95,7 @@ std::vector<EdgePlace> unconfirmed(const Splits& splits) {
   for (std::size_t i = 0; i < members.size() && tried < kMostTried; ++i) {
     if (!(innovation[i].squared <= kUnchecked)) continue;
     ++tried;
-    std::vector<EdgePlace> outside = outliers;
-    outside.insert(std::lower_bound(outside.begin(), outside.end(), members[i]), members[i]);
-    const Graph parts = without_edges(graph, outside);
+    const Graph parts = without_edges(graph, united(outliers, {members[i]}));
     if (!joining_edges(graph, outliers, parts).empty()) result.push_back(members[i]);
   }
   return result;

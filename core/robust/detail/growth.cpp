@@ -68,13 +68,9 @@ std::optional<std::vector<EdgePlace>> grown_from(Splits& splits, std::vector<Edg
     const std::vector<EdgePlace> back = returning(splits, graph, verdict, refused);
     if (back.empty()) break;
     for (const EdgePlace place : back) std::erase(out, place);
-    for (const EdgePlace place : splits.inside(verdict)) {
-      if (squared_error(graph, place) <= splits.bound(place)) continue;
-      out.push_back(place);
-      refused.push_back(place);
-    }
-    std::sort(out.begin(), out.end());
-    std::sort(refused.begin(), refused.end());
+    const std::vector<EdgePlace> beyond = splits.beyond_bound(splits.inside(verdict));
+    out = united(out, beyond);
+    refused = united(refused, beyond);
   }
   splits.consider(std::move(cheapest));
   return out;

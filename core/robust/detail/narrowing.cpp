@@ -75,7 +75,7 @@ int narrow(Splits& splits) {
       Graph settled = narrowing;  // the narrowing itself continues from its own values
       if (!splits.interrupted()) (void)splits.optimized(settled, converge);
       splits.graph().set_values(settled.values());
-      splits.judge(splits.beyond_bound());
+      splits.judge(splits.beyond_bound(splits.roles().candidates));
       next_verdict = std::max(1.0, loss.stretch / 4);
     }
     if (loss.stretch <= 1) break;

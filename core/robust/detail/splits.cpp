@@ -17,6 +17,12 @@ std::vector<EdgePlace> difference(const std::vector<EdgePlace>& edges, const std
   return result;
 }
 
+std::vector<EdgePlace> united(const std::vector<EdgePlace>& edges, const std::vector<EdgePlace>& others) {
+  std::vector<EdgePlace> result;
+  std::set_union(edges.begin(), edges.end(), others.begin(), others.end(), std::back_inserter(result));
+  return result;
+}
+
 Splits::Splits(Graph& graph, Algorithm& algorithm, LinearSolver& solver, const GraduationOptions& options)
     : graph_(graph),
       algorithm_(algorithm),
@@ -39,10 +45,8 @@ bool Splits::is_trusted(EdgePlace place) const {
 }
 
 void Splits::move_to_candidates(const std::vector<EdgePlace>& edges) {
-  std::erase_if(roles_.trusted,
-                [&](EdgePlace place) { return std::binary_search(edges.begin(), edges.end(), place); });
-  roles_.candidates.insert(roles_.candidates.end(), edges.begin(), edges.end());
-  std::sort(roles_.candidates.begin(), roles_.candidates.end());
+  roles_.trusted = difference(roles_.trusted, edges);
+  roles_.candidates = united(roles_.candidates, edges);
 }
 
 double Splits::bound(EdgePlace place) const {
@@ -72,9 +76,9 @@ double Splits::cost_by_edges(const Verdict& verdict) const {
   return result;
 }
 
-std::vector<EdgePlace> Splits::beyond_bound() const {
+std::vector<EdgePlace> Splits::beyond_bound(std::span<const EdgePlace> edges) const {
   std::vector<EdgePlace> result;
-  for (const EdgePlace place : roles_.candidates) {
+  for (const EdgePlace place : edges) {
     if (!(squared_error(graph_, place) <= bound(place))) result.push_back(place);
   }
   return result;
@@ -162,11 +166,7 @@ std::vector<EdgePlace> Splits::still_out(const Verdict& verdict, std::vector<Edg
       returned.insert(known, place);
     }
   }
-  for (const EdgePlace place : inside(verdict)) {
-    if (!(squared_error(graph_, place) <= bound(place))) out.push_back(place);
-  }
-  std::sort(out.begin(), out.end());
-  return out;
+  return united(out, beyond_bound(inside(verdict)));
 }
 
 std::vector<std::pair<double, EdgePlace>> Splits::accusations(std::span<const EdgePlace> members,
@@ -244,12 +244,10 @@ bool Splits::put_out_accused() {
   for (int round = 0; round < kMaxRounds; ++round) {
     if (interrupted_ || best_.values.empty()) return round > 0;
     graph_.set_values(best_.values);
-    std::vector<EdgePlace> outliers = most_accused(inside(best_), best_);
-    if (outliers.empty()) return round > 0;
-    outliers.insert(outliers.end(), best_.outliers.begin(), best_.outliers.end());
-    std::sort(outliers.begin(), outliers.end());
+    const std::vector<EdgePlace> accused = most_accused(inside(best_), best_);
+    if (accused.empty()) return round > 0;
     const double before = best_.cost;
-    judge(std::move(outliers));
+    judge(united(accused, best_.outliers));
     if (!(best_.cost < before)) return round > 0;
   }
   return true;

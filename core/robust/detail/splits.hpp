@@ -33,6 +33,9 @@ struct EdgeRoles {
 /// Returns the edges that are not among others; both lists are ascending, and so is the result.
 [[nodiscard]] std::vector<EdgePlace> difference(const std::vector<EdgePlace>& edges,
                                                 const std::vector<EdgePlace>& others);
+/// Returns the edges of both; both lists are ascending, and so is the result.
+[[nodiscard]] std::vector<EdgePlace> united(const std::vector<EdgePlace>& edges,
+                                            const std::vector<EdgePlace>& others);
 
 /// The splits of a graph, and the cheapest one of those that were tried.
 ///
@@ -57,8 +60,8 @@ class Splits {
 
   // What the values of the graph say.
 
-  /// Returns the candidates beyond their bound.
-  [[nodiscard]] std::vector<EdgePlace> beyond_bound() const;
+  /// Returns those of some edges whose error is beyond their bound.
+  [[nodiscard]] std::vector<EdgePlace> beyond_bound(std::span<const EdgePlace> edges) const;
   /// Returns those of some trusted edges whose error is beyond their bound. Stated noise is often smaller than the
   /// true one; the median of their errors tells by how much.
   [[nodiscard]] std::vector<EdgePlace> contradicted(std::span<const EdgePlace> trusted) const;

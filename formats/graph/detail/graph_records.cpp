@@ -16,6 +16,24 @@ int read_int(LineScanner& line, const Expected& expected) {
   return static_cast<int>(value);
 }
 
+/// The words that may be left out: [quality] [smoothed x y].
+void read_told_and_smoothed(LineScanner& line, Fix& fix) {
+  std::string_view word = line.word();
+  if (const auto quality = fix_quality_from_string(word); quality && !word.empty()) {
+    fix.told.quality = *quality;
+    word = line.word();
+  }
+  if (word == "smoothed") {
+    fix.smoothed_m[0] = line.number({"GNSS", "smoothed", 0});
+    fix.smoothed_m[1] = line.number({"GNSS", "smoothed", 1});
+    word = line.word();
+  }
+  if (!word.empty())
+    line.fail(
+        "GNSS: expected the quality of a fix, such as single or fixed, or smoothed and its x and y, got " +
+        quote_word(word));
+}
+
 }  // namespace
 
 VertexIndex read_vertex_id(LineScanner& line, const Graph& graph, std::string_view tag) {
@@ -48,28 +66,6 @@ Frame read_frame(LineScanner& line) {
   line.end("FRAME");
   return frame;
 }
-
-namespace {
-
-/// The words that may be left out: [quality] [smoothed x y].
-void read_told_and_smoothed(LineScanner& line, Fix& fix) {
-  std::string_view word = line.word();
-  if (const auto quality = fix_quality_from_string(word); quality && !word.empty()) {
-    fix.told.quality = *quality;
-    word = line.word();
-  }
-  if (word == "smoothed") {
-    fix.smoothed_m[0] = line.number({"GNSS", "smoothed", 0});
-    fix.smoothed_m[1] = line.number({"GNSS", "smoothed", 1});
-    word = line.word();
-  }
-  if (!word.empty())
-    line.fail(
-        "GNSS: expected the quality of a fix, such as single or fixed, or smoothed and its x and y, got " +
-        quote_word(word));
-}
-
-}  // namespace
 
 Fix read_fix(LineScanner& line) {
   constexpr std::string_view kTag = "GNSS";

@@ -5,10 +5,6 @@
 
 namespace waymark::formats {
 
-/// Statements of a .graph file.
-inline constexpr std::string_view kOwnTags[] = {"GRAPH",  "FRAME",  "TIME",      "PROVENANCE", "LEVER",
-                                                "SOURCE", "STATES", "EDGES",     "TYPE",       "STAMP",
-                                                "LOSS",   "GNSS",   "COVARIANCE"};
 /// Vertices and edges of TORO and GTSAM.
 inline constexpr std::string_view kToroTags[] = {"VERTEX2", "EDGE2", "VERTEX", "EDGE", "ODOMETRY"};
 /// Beginnings of the tags of graphs in space, of g2o and TORO.

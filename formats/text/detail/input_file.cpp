@@ -18,7 +18,6 @@
 #include <waymark/core/base/error.hpp>
 
 namespace waymark::formats {
-
 namespace {
 
 /// What to do instead of naming a folder.

@@ -9,11 +9,8 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/core/graph/loss.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/normal_equations.hpp>
-#include <waymark/types_se2/edge_se2.hpp>
-#include <waymark/types_se2/g2o_edges.hpp>
 
 #include "support/problems.hpp"
 #include "support/registry.hpp"

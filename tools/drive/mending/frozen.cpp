@@ -65,9 +65,8 @@ std::vector<Run> noisy_rests_of(std::span<const OdometrySample> odometry) {
     Run run{i, i};
     while (run.last + 1 < odometry.size() && rests(run.last + 1)) ++run.last;
     i = run.last;
-    const auto samples = run.of(odometry);
-    if (seconds_between(samples.front().stamp, samples.back().stamp) >= kShortestStandstill_s &&
-        !all_repeat(samples, &OdometrySample::speed_mps))
+    if (run.duration_s(odometry) >= kShortestStandstill_s &&
+        !all_repeat(run.of(odometry), &OdometrySample::speed_mps))
       runs.push_back(run);
   }
   return runs;
@@ -177,6 +176,10 @@ std::optional<FrozenOdometry> judged(const std::vector<Contradiction>& row, std:
 
 bool within(Stamp stamp, const FrozenOdometry& frozen) {
   return frozen.from <= stamp && stamp <= frozen.to;
+}
+
+bool overlaps(const FrozenOdometry& frozen, Stamp from, Stamp to) {
+  return frozen.from <= to && from <= frozen.to;
 }
 
 std::span<const OdometrySample> within(std::span<const OdometrySample> run, const FrozenOdometry& frozen) {
@@ -449,7 +452,7 @@ void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vec
                         [](double sum, const FrozenOdometry& part) { return sum + part.distance_m; });
     rest.at_rest = true;
     const bool is_known = std::any_of(found.begin(), found.end(), [&](const FrozenOdometry& other) {
-      return other.from <= rest.to && rest.from <= other.to;
+      return overlaps(other, rest.from, rest.to);
     });
     if (!is_known) found.push_back(rest);
   }
@@ -468,13 +471,19 @@ void find_frozen_turns(std::span<const OdometrySample> odometry, const std::vect
     const Stamp from = samples.front().stamp;
     const Stamp to = samples.back().stamp;
     const bool is_known = std::any_of(speeds.begin(), speeds.end(), [&](const FrozenOdometry& other) {
-      return other.with_turns && other.from <= to && from <= other.to;
+      return other.with_turns && overlaps(other, from, to);
     });
     if (is_known || duration_of(samples) < kShortestOfOne_s || samples.size() < *unusual) continue;
     if (!drives(samples) || turns_agree(within(fixes, from, to), samples)) continue;
     found.push_back({from, to, samples.front().speed_mps, samples.front().yaw_rate_radps,
                      way_of(within(fixes, from, to)).steps_m, false, true});
   }
+}
+
+std::string readings_in_words(const FrozenOdometry& frozen) {
+  if (frozen.at_rest) return fmt::format("reads speeds below {:.1f} m/s", kMoves);
+  if (!frozen.with_speed) return fmt::format("repeats a yaw rate of {:.3g} rad/s", frozen.yaw_rate_radps);
+  return fmt::format("repeats {:.3g} m/s{}", frozen.speed_mps, frozen.with_turns ? " and its yaw rate" : "");
 }
 
 }  // namespace
@@ -504,16 +513,12 @@ void assume_motion_of_fixes(std::span<const FrozenOdometry> frozen, std::span<co
 }
 
 std::string warning_of(const FrozenOdometry& frozen, Stamp start) {
-  const std::string readings = frozen.at_rest ? fmt::format("reads speeds below {:.1f} m/s", kMoves)
-                               : frozen.with_speed
-                                   ? fmt::format("repeats {:.3g} m/s{}", frozen.speed_mps,
-                                                 frozen.with_turns ? " and its yaw rate" : "")
-                                   : fmt::format("repeats a yaw rate of {:.3g} rad/s", frozen.yaw_rate_radps);
   return fmt::format(
       "the odometry {} from {:.1f} s to {:.1f} s after its start, while the fixes move by "
       "{:.0f} m: its readings are left out there, and the motion of the fixes is assumed with the noise of a "
       "gap; check the log of the odometry, and the clocks of both logs",
-      readings, seconds_between(start, frozen.from), seconds_between(start, frozen.to), frozen.distance_m);
+      readings_in_words(frozen), seconds_between(start, frozen.from), seconds_between(start, frozen.to),
+      frozen.distance_m);
 }
 
 }  // namespace waymark::drive

@@ -79,8 +79,8 @@ void Predictor::add_edge(const Graph& graph, std::size_t batch, std::size_t edge
   }
 }
 
-bool Predictor::touches_unknown(const Graph& graph, std::size_t batch, std::size_t edge, const Joint& joint) {
-  const std::span<const VertexIndex> vertices = graph.batch(batch).vertices(edge);
+bool Predictor::touches_unknown(const Graph& graph, EdgePlace edge, const Joint& joint) {
+  const std::span<const VertexIndex> vertices = graph.batch(edge.batch).vertices(edge.edge);
   return std::any_of(vertices.begin(), vertices.end(),
                      [&](VertexIndex v) { return !graph.fixed(v) && joint.row_of(v) < 0; });
 }
@@ -131,15 +131,17 @@ void Predictor::follow(Graph& graph, VertexIndex pose) {
         first);
   }
   if (joint.row_of(pose) < 0) return;
-  Joint of_unknown = joint;  // with those edges as well that touch what is not known here
+  std::vector<EdgePlace> waiting;
   for (std::size_t b = 0; b < graph.batch_count(); ++b)
     for (std::size_t e = b < edges_.size() ? edges_[b] : 0; e < graph.batch(b).size(); ++e) {
-      add_edge(graph, b, e, of_unknown);
-      if (!touches_unknown(graph, b, e, joint)) add_edge(graph, b, e, joint);
+      if (touches_unknown(graph, {b, e}, joint))
+        waiting.push_back({b, e});
+      else
+        add_edge(graph, b, e, joint);
     }
   Eigen::LDLT<Eigen::MatrixXd> factor(joint.information);
-  if (!is_determined(factor)) {
-    joint = std::move(of_unknown);
+  if (!is_determined(factor) && !waiting.empty()) {
+    for (const EdgePlace edge : waiting) add_edge(graph, edge.batch, edge.edge, joint);
     factor.compute(joint.information);
   }
   if (!is_determined(factor)) {

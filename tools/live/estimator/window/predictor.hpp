@@ -41,7 +41,7 @@ class Predictor {
   void keep_sizes(const Graph& graph);
   void add_edge(const Graph& graph, std::size_t batch, std::size_t edge, Joint& joint) const;
   /// Tells whether an edge has a vertex whose covariance is not known here, and that is not new.
-  static bool touches_unknown(const Graph& graph, std::size_t batch, std::size_t edge, const Joint& joint);
+  static bool touches_unknown(const Graph& graph, EdgePlace edge, const Joint& joint);
 
   std::vector<VertexId> vertices_;   // the pose first
   std::vector<Eigen::Index> sizes_;  // of their tangents
