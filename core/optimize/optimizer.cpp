@@ -14,6 +14,7 @@
 #include <waymark/core/optimize/detail/equations.hpp>
 #include <waymark/core/optimize/detail/iteration_words.hpp>
 #include <waymark/core/optimize/detail/jump_watch.hpp>
+#include <waymark/core/optimize/detail/step_acceleration.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/detail/information_unit.hpp>
 #include <waymark/core/system/gauge.hpp>
@@ -51,6 +52,8 @@ std::string text(const Part&... part) {
 /// where the decrement is this share of chi2, and shrinks by less than a tenth at a time.
 constexpr double kNearMinimum = 1e-4;
 constexpr double kSlowly = 0.1;
+/// They are accelerated where the decrement shrinks by less than to that.
+constexpr double kAccelerated = 0.3;
 /// The whole curvature is given up if the decrement does not shrink to that. The first one is larger than that of
 /// the reweighted steps, which do not see how far it is.
 constexpr double kContraction = 0.5;
@@ -99,6 +102,7 @@ class Loop {
     return chi2_ - best_chi2_ > options_.decrement_tolerance * (unit_ + best_chi2_);
   }
   bool step_once();
+  std::optional<double> accelerated_chi2();
   bool converges_slowly() const;
   bool step_with_whole_curvature();
   bool give_up_whole_curvature();
@@ -154,6 +158,7 @@ class Loop {
   bool has_losses_ = false;
   double freedom_ = 0;  // equations less unknowns, >= 0
   Step step_;
+  std::optional<detail::StepAcceleration> acceleration_;  // of graphs with losses
   detail::JumpWatch jumps_;
   int steps_beyond_jump_ = 0;  // still to take before it is judged; 0: no crossing
   double chi2_before_jump_ = 0;
@@ -184,6 +189,7 @@ void Loop::prepare() {
   summary_.unknowns =
       structure_.pattern().dimension() - static_cast<std::int64_t>(structure_.held_coordinates().size());
   has_losses_ = has_losses(graph_);
+  if (has_losses_) acceleration_.emplace(structure_.pattern().dimension());
   freedom_ =
       static_cast<double>(std::max<std::int64_t>(detail::count_equations(graph_) - summary_.unknowns, 0));
   for (std::size_t b = 0; b < graph_.batch_count(); ++b) {
@@ -350,6 +356,28 @@ bool Loop::step_with_whole_curvature() {
   return true;
 }
 
+/// Tries the accelerated step where steps that reweight losses are slow. @returns chi2 at trial_, where the equations are
+/// linearised then; empty if it is not lower
+std::optional<double> Loop::accelerated_chi2() {
+  if (!acceleration_ || summary_.records.empty()) return std::nullopt;
+  const IterationRecord& last = summary_.records.back();
+  const bool is_slow = step_.full_newton && last.accepted && last.kind == "newton" &&
+                       step_.newton_decrement > kAccelerated * last.newton_decrement;
+  if (!is_slow) {
+    acceleration_->reset();
+    return std::nullopt;
+  }
+  if (!acceleration_->accelerate(step_.delta, equations_.diagonal())) return std::nullopt;
+  equations_.retract(values_, acceleration_->accelerated(), trial_);
+  const double chi2 = linearize(trial_);
+  if (chi2 < chi2_) {
+    acceleration_->moved(acceleration_->accelerated());
+    return chi2;
+  }
+  acceleration_->begin(step_.delta);
+  return std::nullopt;
+}
+
 // Takes one step: from the present linearisation to the next one, or to the end.
 bool Loop::step_once() {
   // 1. Propose.
@@ -378,9 +406,13 @@ bool Loop::step_once() {
 
   // 3. Try it. Most steps are accepted, so their chi2 comes with the next linearisation. After a
   //    rejection, and for the last step, only chi2 is computed.
-  equations_.retract(values_, step_.delta, trial_);
   const bool linearized = !converged && last_accepted_;
-  const double trial_chi2 = linearized ? linearize(trial_) : equations_.chi2(trial_);
+  const std::optional<double> accelerated = linearized ? accelerated_chi2() : std::nullopt;
+  if (!accelerated) equations_.retract(values_, step_.delta, trial_);
+  const double trial_chi2 = accelerated  ? *accelerated
+                            : linearized ? linearize(trial_)
+                                         : equations_.chi2(trial_);
+  if (acceleration_ && !accelerated) acceleration_->moved(step_.delta);
   record.chi2 = trial_chi2;
   record.decrease = chi2_ - trial_chi2;
   if (converged && has_more_to_gain(record)) converged = done_ = false;
