@@ -113,7 +113,7 @@ TEST_CASE("gpx: accuracy is HDOP times a stated error, else the stated default, 
         "run.gpx:4:1: trkpt: the log has no accuracy but HDOP: state 'range_error', which is "
         "multiplied by HDOP, or 'accuracy: {default_sigma: ...}'");
   CHECK(first_complaint(kOpen + replaced(kPoint, "<hdop>0.8</hdop>", "") + kClose, request) ==
-        "run.gpx:4:1: trkpt: the log has no accuracy: state 'accuracy: {default_sigma: ...}'");
+        "run.gpx:4:1: trkpt: the log has no accuracy (0 and less are none): state 'accuracy: {default_sigma: ...}'");
   request.default_sigma_m = 3;
   CHECK(decode(kOpen + kPoint + kClose, request).fixes.at(0).covariance_en(1, 1) == 9);
   request.default_sigma_m = 0;

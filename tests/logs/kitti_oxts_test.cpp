@@ -124,7 +124,7 @@ TEST_CASE("kitti_oxts: what is wrong with a record is said with its place, and t
   CHECK(first_complaint(replaced(kCounting, "6 7 8", "6 7 800"), StreamKind::odometry) ==
         "oxts/data:2:17: vf: 800 is outside -150 .. 150");
   CHECK(first_complaint(replaced(kCounting, "-0.5 2 0.1", "-0.5 0 0.1"), StreamKind::gnss) ==
-        "oxts/data:2:62: the log has no accuracy: state 'accuracy: {default_sigma: ...}'");
+        "oxts/data:2:62: the log has no accuracy (0 and less are none): state 'accuracy: {default_sigma: ...}'");
   const LogData data = read("1 2 3\n" + kFirst, request_of(StreamKind::odometry));
   CHECK(data.odometry.at(0).stamp.nanoseconds == 1'317'042'146'074'389'445);
 }

@@ -250,7 +250,7 @@ TEST_CASE("novatel: what is wrong with a message is said with its place") {
         "run.log:1:1: BESTPOSA: expected a GPS week and its seconds, got '1803' '700000'");
   const std::string of_no_quality = replaced(kBody, "SINGLE", "FIXEDHEIGHT");
   CHECK(first_complaint(bestpos("10", replaced(of_no_quality, ",3,2,4", ",0,0,0"))) ==
-        "run.log:1:111: BESTPOSA: the log has no accuracy: state 'accuracy: {default_sigma: ...}'");
+        "run.log:1:111: BESTPOSA: the log has no accuracy (0 and less are none): state 'accuracy: {default_sigma: ...}'");
   CHECK(first_complaint(bestvel("10", "SOL_COMPUTED,DOPPLER_VELOCITY,0.150,0.000,-5,90,0,0")) ==
         "run.log:1:105: BESTVELA: horizontal speed: -5 is outside 0 .. 1000");
 }

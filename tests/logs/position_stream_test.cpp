@@ -62,7 +62,7 @@ TEST_CASE("positions: what no accuracy can be is complained of") {
   CHECK(said_of(squares(4, kNan)) == "the covariance is not positive definite");
   CHECK(said_of(squares(kNan, 4)) == "the covariance is not positive definite");
   CHECK(said_of(squares(1.1e14, 4)) == "an accuracy of more than 10,000 km");
-  CHECK(said_of({}) == "the log has no accuracy: state 'accuracy: {default_sigma: ...}'");
+  CHECK(said_of({}) == "the log has no accuracy (0 and less are none): state 'accuracy: {default_sigma: ...}'");
   CHECK(said_of({}, {}, {.hdop = 2}) ==
         "the log has no accuracy but HDOP: state 'range_error', which is multiplied by "
         "HDOP, or 'accuracy: {default_sigma: ...}'");

@@ -91,9 +91,10 @@ TEST_CASE("candump: accuracies per axis with their covariance") {
 
 TEST_CASE("candump: a fix without accuracy takes the stated default or is corrupt") {
   LogRequest request = fixes();
-  CHECK_THROWS_MATCHES(read(position("1.0", 1, 1, 0), request), InputError,
-                       Message("car.log: none of 1 records could be used; first: car.log:1:1: the "
-                               "log has no accuracy: state 'accuracy: {default_sigma: ...}'"));
+  CHECK_THROWS_MATCHES(
+      read(position("1.0", 1, 1, 0), request), InputError,
+      Message("car.log: none of 1 records could be used; first: car.log:1:1: the "
+              "log has no accuracy (0 and less are none): state 'accuracy: {default_sigma: ...}'"));
   request.default_sigma_m = 3;
   const LogData data = read(position("1.0", 1, 1, 0), request);
   CHECK(data.fixes.at(0).covariance_en(0, 0) == 9);

@@ -274,7 +274,7 @@ TEST_CASE("csv: a fix without accuracy takes the stated default, or is corrupt")
   CHECK(strict.fixes.size() == 1);
   CHECK(strict.corrupt == 2);
   CHECK(strict.corrupt_examples[0] ==
-        "log.csv:2:8: accuracy: the log has no accuracy: state 'accuracy: {default_sigma: ...}'");
+        "log.csv:2:8: accuracy: the log has no accuracy (0 and less are none): state 'accuracy: {default_sigma: ...}'");
 
   CHECK_THROWS_MATCHES(
       read_csv("time,latitude,longitude\n1,50,8\n", gnss(0)), InputError,

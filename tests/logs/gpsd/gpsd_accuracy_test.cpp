@@ -30,7 +30,7 @@ TEST_CASE("gpsd: a report without accuracy takes the stated default, or is corru
   CHECK(strict.fixes.size() == 1);
   CHECK(strict.corrupt_examples ==
         std::vector<std::string>{
-            "log.json:2:1: TPV: the log has no accuracy: state 'accuracy: {default_sigma: ...}'"});
+            "log.json:2:1: TPV: the log has no accuracy (0 and less are none): state 'accuracy: {default_sigma: ...}'"});
   request.default_sigma_m = 7;
   CHECK(read(text, request).fixes.at(1).covariance_en(1, 1) == 49);
 }

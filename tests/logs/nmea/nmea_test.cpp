@@ -110,7 +110,7 @@ TEST_CASE("nmea: which accuracy a fix gets") {
   CHECK_THROWS_MATCHES(
       read(line("GPRMC,000001,A,4810.8509,N,01133.9095,E,10,90,010409,,"), request), InputError,
       Message("log.nmea: none of 1 records could be used; first: log.nmea:1:1: the log has no "
-              "accuracy: state 'accuracy: {default_sigma: ...}'"));
+              "accuracy (0 and less are none): state 'accuracy: {default_sigma: ...}'"));
 }
 
 TEST_CASE("nmea: quality, satellites, HDOP and age of corrections are told") {

@@ -125,6 +125,22 @@ TEST_CASE("prepare: disorder, repetition, garbage and reversing are counted") {
   CHECK(drive.report.gnss.non_finite == 1);
 }
 
+TEST_CASE("prepare: seconds of the day go on behind midnight in every log") {
+  const DriveLogs usual = small_drive();
+  DriveLogs at_midnight = usual;
+  const auto wrap = [](Stamp& stamp) {  // 104.95 s is midnight
+    stamp = Stamp::from_seconds(std::fmod(stamp.seconds() - 104.95 + 86400, 86400));
+  };
+  for (OdometrySample& sample : at_midnight.odometry.front().front().data.odometry) wrap(sample.stamp);
+  for (GeodeticFix& fix : at_midnight.gnss[0].data.fixes) wrap(fix.stamp);
+  const PreparedDrive drive = prepare_drive(at_midnight, small_description());
+  CHECK(drive.odometry.size() == 101);
+  CHECK(drive.fixes.size() == 8);
+  CHECK(seconds_between(drive.odometry.front().stamp, drive.odometry.back().stamp) == Approx(10));
+  CHECK(drive.report.odometry.out_of_order == 0);
+  CHECK(drive.report.odometry.gaps.empty());
+}
+
 TEST_CASE("prepare: two receivers may speak at one stamp: one epoch, two fixes") {
   DriveLogs logs = small_drive();
   logs.gnss.emplace_back();

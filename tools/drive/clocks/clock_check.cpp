@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/stamps/clock_steps.hpp>
 #include <waymark/tools/drive/clocks/clock_sync.hpp>
 #include <waymark/tools/drive/clocks/late_quantity.hpp>
 #include <waymark/tools/drive/clocks/odometry_check.hpp>
@@ -211,22 +212,38 @@ std::vector<OdometrySample> without_late_quantity(const LateQuantity& late, cons
   return without_lateness(drive.odometry, late);
 }
 
+/// Takes back the steps of a clock that was set during the drive.
+void take_back_steps(const DriveLogs& logs, DriveDescription& description, PreparedDrive& drive,
+                     Found& found) {
+  if (drive.report.stamp_steps.empty()) return;
+  const LoggedMotion motion = logged_motion(logs, description);
+  OdometryConfig& odometry = config_of(drive.odometry_name, description);
+  odometry.clock_steps = find_clock_steps(drive.report.stamp_steps, motion.odometry(), motion.fixes);
+  if (odometry.clock_steps.empty()) return;
+  drive = prepare_drive(logs, description);
+  for (const StampStep& step : odometry.clock_steps)
+    found.warnings.push_back(
+        warning_of(step, logs.odometry.front().front().file, motion.odometry().front().stamp));
+}
+
 /// Compares speed and yaw rate of the only odometry with the fixes, and what is left with their clock. A quantity that
 /// is late alone looks like a clock that is wrong.
 PreparedDrive with_clock_told(PreparedDrive drive, const DriveLogs& logs, DriveDescription description,
                               ClocksApart treatment) {
+  Found found;
+  if (treatment == ClocksApart::move) take_back_steps(logs, description, drive, found);
   std::optional<ClockOffset> offset = offset_shown(drive.odometry, drive.fixes);
   const bool is_far = offset && std::abs(offset->late_s) > kOneClock_s;
   // Fixes that are filtered move and turn late, and are not.
   const auto smooths = [](const PreparedReceiver& receiver) { return receiver.smoothing_s.value_or(0) > 0; };
-  if (!is_far && std::any_of(drive.receivers.begin(), drive.receivers.end(), smooths)) return drive;
-  const auto late =
-      is_far ? std::nullopt : late_quantity_shown(drive.odometry, drive.fixes, drive.yaw_rate_at_rest);
-  Found found;
+  const bool is_filtered = !is_far && std::any_of(drive.receivers.begin(), drive.receivers.end(), smooths);
+  const auto late = is_far || is_filtered
+                        ? std::nullopt
+                        : late_quantity_shown(drive.odometry, drive.fixes, drive.yaw_rate_at_rest);
   if (late)
     offset =
         offset_shown(without_late_quantity(*late, logs, description, treatment, drive, found), drive.fixes);
-  if (offset) treat_clock(*offset, logs, description, treatment, drive, found);
+  if (offset && !is_filtered) treat_clock(*offset, logs, description, treatment, drive, found);
   drive.report.tells_late_quantity = found.tells_late_quantity;
   drive.report.moved_quantity = found.moved_quantity;
   drive.report.told_clock = found.told_clock;

@@ -18,6 +18,7 @@
 #include <waymark/tools/drive/logs/memory_log.hpp>
 #include <waymark/tools/drive/logs/parts/odometry_parts.hpp>
 #include <waymark/tools/drive/nodes/timeline.hpp>
+#include <waymark/tools/drive/stamps/stamp_steps.hpp>
 
 namespace waymark::drive {
 
@@ -43,6 +44,8 @@ struct OdometryConfig {
   double yaw_rate_delay_s = 0;
   std::string delay_place{};  ///< "drive.yaml:12:5: " of a stated delay, for messages
   bool gives_nodes = false;   ///< stated: the nodes of the graph are at its stamps
+  /// at which the clock of its only log was set (clock_steps.hpp): found, and taken back
+  std::vector<StampStep> clock_steps{};
 };
 
 /// An absolute source: the log of its positions, and the log of its velocity if that is another one.
@@ -55,9 +58,9 @@ struct GnssConfig : LogConfig {
   std::string delay_place{};        ///< "drive.yaml:12:5: " of a stated delay, for messages
   /// time of its filter (ReceiverFilter), s; 0: it does not smooth; empty: not known
   std::optional<double> smoothing_s{};
-  double period_s = 0;              ///< its fixes are thinned to one per period (0: keep all)
-  int withhold_every = 0;           ///< every n-th of its fixes is left out of the graph (0: none)
-  bool withheld = false;            ///< all of its fixes are left out of the graph
+  double period_s = 0;     ///< its fixes are thinned to one per period (0: keep all)
+  int withhold_every = 0;  ///< every n-th of its fixes is left out of the graph (0: none)
+  bool withheld = false;   ///< all of its fixes are left out of the graph
 };
 
 /// A further sensor of the vehicle.

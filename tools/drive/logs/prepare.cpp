@@ -18,6 +18,7 @@
 #include <waymark/tools/drive/logs/streams.hpp>
 #include <waymark/tools/drive/mending/carried.hpp>
 #include <waymark/tools/drive/mending/creeping.hpp>
+#include <waymark/tools/drive/mending/factor_change.hpp>
 #include <waymark/tools/drive/mending/fix_motion.hpp>
 #include <waymark/tools/drive/mending/frozen.hpp>
 #include <waymark/tools/drive/mending/reversing.hpp>
@@ -222,6 +223,10 @@ void mend_by_fixes(PreparedDrive& drive) {
 
 /// Replaces speeds that no vehicle has, or that the fixes show to be otherwise, and gives speeds their sign.
 void mend_speeds(PreparedDrive& drive) {
+  const std::vector<FactorChange> factors = find_factor_changes(drive.odometry, drive.fixes);
+  for (const FactorChange& change : factors)
+    drive.report.warnings.push_back(warning_of(change, drive.odometry));
+  take_factors(factors, drive.odometry);
   find_stops("", drive.odometry, drive);
   if (drive.timeline.gap_policy == GapPolicy::bridge) leave_out_carried("", drive.odometry, drive);
   const std::vector<SpeedLeap> leaps = find_speed_leaps(drive.odometry);
@@ -326,9 +331,8 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
   take_odometry(prepare_odometry(logs, description, drive.report), drive);
   for (std::size_t i = 0; i < logs.gnss.size(); ++i) {
     const GnssConfig& receiver = receiver_of(description, i);
-    drive.receivers.push_back(
-        {receiver.name, receiver.antenna_m, receiver.antenna_is_stated, !receiver.delay_place.empty(),
-         receiver.smoothing_s});
+    drive.receivers.push_back({receiver.name, receiver.antenna_m, receiver.antenna_is_stated,
+                               !receiver.delay_place.empty(), receiver.smoothing_s});
   }
   const std::vector<GeodeticFix> fixes = prepare_fixes(logs, description, drive.odometry, drive.report);
   const std::vector<GeodeticTruth> truth = clean_truth(logs.truth, drive.scale, drive.report);

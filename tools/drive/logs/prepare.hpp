@@ -89,6 +89,7 @@ struct PrepareReport {
   std::vector<std::string> notes;
   /// sentences about readings that contradict each other
   std::vector<std::string> warnings;
+  std::vector<StampStep> stamp_steps{};   ///< of the odometry, if it is the only one and of one log
   std::optional<ToldClock> told_clock{};  ///< the warning of which is among them
   /// of odometries whose yaw rates no vehicle has, as if deg/s were read as rad/s: what to state, by name
   std::map<std::string, std::string> impossible_turns{};

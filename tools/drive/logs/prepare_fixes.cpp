@@ -14,6 +14,7 @@
 #include <waymark/tools/drive/logs/shared_stamps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
 #include <waymark/tools/drive/logs/velocity.hpp>
+#include <waymark/tools/drive/stamps/settle_stamps.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -137,6 +138,7 @@ std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveDescrip
     const std::size_t before = fixes.size();
     append_log(log.data.fixes, log, description.scale(), fixes, report.gnss, report);
     settle_shared_stamps(std::span(fixes).subspan(before), log.file, report);
+    settle_bursts(std::span(fixes).subspan(before), log.file, report);
     if (std::string warning = warning_of_turns(std::span(fixes).subspan(before), log.file); !warning.empty())
       report.warnings.push_back(std::move(warning));
     if (i < logs.velocity.size() && logs.velocity[i].data.readings.size() > 0)

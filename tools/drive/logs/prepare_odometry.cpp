@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 #include <set>
+#include <span>
 #include <string>
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@
 #include <waymark/tools/drive/logs/clock_offsets.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
+#include <waymark/tools/drive/stamps/clock_steps.hpp>
 #include <waymark/tools/drive/stamps/settle_stamps.hpp>
 
 namespace waymark::drive {
@@ -28,6 +30,14 @@ std::set<std::string, std::less<>> channels_by_default(const LogRequest& request
     if (!formats::names_columns_of(request, channel.name)) unstated.insert(channel.name);
   if (unstated.size() == formats::odometry_channels().size()) unstated.clear();
   return unstated;
+}
+
+/// Takes back the steps of a clock that was set, and tells where else the stamps do not go on. @param stamps of a log
+void settle_clock(std::span<Stamp> stamps, std::size_t logs, const OdometryConfig& config,
+                  PrepareReport& report) {
+  if (logs != 1) return;
+  take_back(config.clock_steps, stamps);
+  report.stamp_steps = find_stamp_steps(stamps);
 }
 
 /// Assembles logs with channels. @throws InputError if some are complete odometry and
@@ -43,6 +53,7 @@ void assemble_parts(const std::vector<DriveLogs::Log>& logs, const OdometryConfi
     if (i < config.logs.size()) part.by_default = channels_by_default(config.logs[i].request);
     put_on_scale(part.readings.stamps, log, description.scale(),
                  [](Stamp& stamp) -> Stamp& { return stamp; });
+    settle_clock(part.readings.stamps, logs.size(), config, report);
     settle_stamps(part.readings, log.file, report);
     parts.push_back(std::move(part));
   }
@@ -130,6 +141,10 @@ void read_source(const std::vector<DriveLogs::Log>& logs, const OdometryConfig& 
   for (const DriveLogs::Log& log : logs) {
     const std::size_t before = samples.size();
     append_log(log.data.odometry, log, description.scale(), samples, stream, report);
+    std::vector<Stamp> stamps;
+    for (const OdometrySample& sample : std::span(samples).subspan(before)) stamps.push_back(sample.stamp);
+    settle_clock(stamps, logs.size(), config, report);
+    for (std::size_t i = 0; i < stamps.size(); ++i) samples[before + i].stamp = stamps[i];
     settle_stamps(samples, before, log.file, report);
   }
   source.yaw_rate_at_rest.stated_derived = is_from_wheels_or_steering(config.assembly.yaw_rate_from);
@@ -150,7 +165,7 @@ void read_source(const std::vector<DriveLogs::Log>& logs, const OdometryConfig& 
 }
 
 /// A relative source while it is prepared.
-struct Candidate {
+struct RelativeCandidate {
   PreparedOdometry source;
   StreamReport stream;
   std::string file;          ///< its first log
@@ -159,12 +174,12 @@ struct Candidate {
   std::string flaw{};        ///< why it is not usable; empty: it is
 };
 
-Candidate candidate_of(const std::vector<DriveLogs::Log>& logs, const OdometryConfig& config,
-                       const DriveDescription& description, PrepareReport& report) {
-  Candidate candidate{.source = {config.name, {}, 0, {}},
-                      .stream = {},
-                      .file = logs.front().file,
-                      .gives_nodes = config.gives_nodes};
+RelativeCandidate candidate_of(const std::vector<DriveLogs::Log>& logs, const OdometryConfig& config,
+                               const DriveDescription& description, PrepareReport& report) {
+  RelativeCandidate candidate{.source = {config.name, {}, 0, {}},
+                              .stream = {},
+                              .file = logs.front().file,
+                              .gives_nodes = config.gives_nodes};
   std::vector<OdometrySample>& samples = candidate.source.samples;
   read_source(logs, config, description, candidate.source, candidate.stream, report);
   const bool had_motion = candidate.stream.read >= 2;
@@ -199,7 +214,7 @@ std::string leap_of(const std::vector<OdometrySample>& samples, const std::strin
 }
 
 /// Cuts samples to the window of the drive. @param first stamp of the drive
-void cut_to_window(Stamp first, const DriveDescription& description, Candidate& candidate,
+void cut_to_window(Stamp first, const DriveDescription& description, RelativeCandidate& candidate,
                    PrepareReport& report) {
   std::vector<OdometrySample>& samples = candidate.source.samples;
   report.odometry_outside_window += std::erase_if(samples, [&](const OdometrySample& s) {
@@ -220,18 +235,18 @@ void cut_to_window(Stamp first, const DriveDescription& description, Candidate& 
 }
 
 /// Leaves out the sources without motion. @throws InputError if no other one is left
-void leave_out_unusable(std::vector<Candidate>& candidates, PrepareReport& report) {
-  const auto is_unusable = [](const Candidate& candidate) { return !candidate.flaw.empty(); };
+void leave_out_unusable(std::vector<RelativeCandidate>& candidates, PrepareReport& report) {
+  const auto is_unusable = [](const RelativeCandidate& candidate) { return !candidate.flaw.empty(); };
   if (std::all_of(candidates.begin(), candidates.end(), is_unusable))
     throw InputError(candidates.front().flaw);
-  for (const Candidate& candidate : candidates)
+  for (const RelativeCandidate& candidate : candidates)
     if (is_unusable(candidate))
       report.warnings.push_back(candidate.source.name + " is left out: " + candidate.flaw);
   std::erase_if(candidates, is_unusable);
 }
 
 /// Puts the source of the nodes first: the stated one, else the densest.
-void put_first(std::vector<Candidate>& candidates) {
+void put_first(std::vector<RelativeCandidate>& candidates) {
   std::size_t first = 0;
   for (std::size_t i = 1; i < candidates.size(); ++i) {
     const bool is_denser =
@@ -256,7 +271,7 @@ double longest_interval_s(const DriveDescription& description, std::span<const O
 
 std::vector<PreparedOdometry> prepare_odometry(const DriveLogs& logs, const DriveDescription& description,
                                                PrepareReport& report) {
-  std::vector<Candidate> candidates;
+  std::vector<RelativeCandidate> candidates;
   Stamp first{std::numeric_limits<std::int64_t>::max()};
   for (std::size_t i = 0; i < logs.odometry.size(); ++i) {
     const OdometryConfig config =
@@ -265,10 +280,10 @@ std::vector<PreparedOdometry> prepare_odometry(const DriveLogs& logs, const Driv
     if (candidates.back().flaw.empty())
       first = std::min(first, candidates.back().source.samples.front().stamp);
   }
-  for (Candidate& candidate : candidates)
+  for (RelativeCandidate& candidate : candidates)
     if (candidate.flaw.empty()) cut_to_window(first, description, candidate, report);
   leave_out_unusable(candidates, report);
-  for (Candidate& candidate : candidates) {
+  for (RelativeCandidate& candidate : candidates) {
     PreparedOdometry& source = candidate.source;
     source.gap_s = longest_interval_s(description, source.samples);
     mark_turns_on_spot(source.samples);
@@ -289,7 +304,7 @@ std::vector<PreparedOdometry> prepare_odometry(const DriveLogs& logs, const Driv
   if (candidates.size() == 1 && description.timeline.gap_policy == GapPolicy::bridge)
     note_gaps(main.gap_s, main.samples.front().stamp, report);
   std::vector<PreparedOdometry> relative;
-  for (Candidate& candidate : candidates) relative.push_back(std::move(candidate.source));
+  for (RelativeCandidate& candidate : candidates) relative.push_back(std::move(candidate.source));
   return relative;
 }
 

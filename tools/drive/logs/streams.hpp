@@ -72,12 +72,35 @@ inline void add_log_report(const LogData& data, StreamReport& stream, PrepareRep
                                  data.corrupt_examples.end());
 }
 
-/// Converts the stamps of a log to the scale of the drive. @param stamp_of Stamp&(Sample&)
+/// Lets seconds of the day go on behind midnight, where all stamps of a log are less than a day and fall by nearly that.
+/// @param samples in the order of the log @param stamp_of Stamp&(Sample&)
+template <typename Samples, typename StampOf>
+void pass_midnights(Samples& samples, StampOf stamp_of) {
+  constexpr std::int64_t kDay = 86'400'000'000'000;
+  constexpr std::int64_t kLongestGap = kDay / 24;
+  const bool are_of_day = std::all_of(samples.begin(), samples.end(), [&](auto& sample) {
+    const std::int64_t time = stamp_of(sample).nanoseconds;
+    return time >= 0 && time < kDay;
+  });
+  if (!are_of_day) return;
+  std::int64_t last = 0;
+  std::int64_t midnights = 0;
+  for (auto& sample : samples) {
+    Stamp& stamp = stamp_of(sample);
+    midnights += last - stamp.nanoseconds > kDay - kLongestGap;
+    last = stamp.nanoseconds;
+    stamp.nanoseconds += midnights * kDay;
+  }
+}
+
+/// Converts the stamps of a log to the scale of the drive; those that are seconds of the day pass midnight.
+/// @param samples in the order of the log @param stamp_of Stamp&(Sample&)
 /// @throws InputError for seconds of week that would need a date
 template <typename Samples, typename StampOf>
 void put_on_scale(Samples&& samples, const DriveLogs::Log& log, TimeScale scale, StampOf stamp_of) {
   constexpr std::int64_t kTwoWeeks = 2 * formats::kGpsWeekNanoseconds;
   const bool changes_scale = convert(Stamp{}, log.scale, scale) != Stamp{};
+  pass_midnights(samples, stamp_of);
   for (auto& sample : samples) {
     Stamp& stamp = stamp_of(sample);
     if (changes_scale && log.scale == TimeScale::gps && stamp.nanoseconds < kTwoWeeks)

@@ -12,6 +12,7 @@
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/tools/drive/mending/fix_motion.hpp>
 #include <waymark/tools/drive/mending/laid_odometry.hpp>
+#include <waymark/tools/drive/mending/reckoned.hpp>
 #include <waymark/tools/drive/mending/sample_range.hpp>
 #include <waymark/tools/drive/nodes/yaw_rate_at_rest.hpp>
 #include <waymark/types_se2/se2.hpp>
@@ -242,38 +243,6 @@ std::optional<bool> fixes_agree(std::span<const Fix> fixes, double speed_mps) {
   const double repeated_m = speed_mps * way.duration_s;
   const double allowed_m = kShare * repeated_m + upper_median(std::move(accuracies));
   return way.chords_m - allowed_m < repeated_m && repeated_m < way.steps_m + allowed_m;
-}
-
-using Complex = std::complex<double>;
-
-/// Dead reckoning from the last sample before the first fix on.
-struct Reckoned {
-  std::vector<Complex> places;  ///< at the fixes, m
-  double length_m = 0;          ///< from the first fix to the last one
-};
-
-/// @param fixes within the time of the samples, at least one
-Reckoned reckoned(std::span<const OdometrySample> samples, std::span<const Fix> fixes) {
-  Reckoned result;
-  Complex place = 0;
-  double heading = 0;
-  const auto later =
-      std::upper_bound(samples.begin(), samples.end(), fixes.front().stamp,
-                       [](Stamp stamp, const OdometrySample& sample) { return stamp < sample.stamp; });
-  auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, later - samples.begin() - 1));
-  const auto ahead = [&](double dt) {
-    return std::polar(samples[i].speed_mps * dt, heading + 0.5 * dt * samples[i].yaw_rate_radps);
-  };
-  for (const Fix& fix : fixes) {
-    for (; i + 1 < samples.size() && samples[i + 1].stamp <= fix.stamp; ++i) {
-      const double dt = seconds_between(samples[i].stamp, samples[i + 1].stamp);
-      place += ahead(dt);
-      heading += dt * samples[i].yaw_rate_radps;
-    }
-    result.places.push_back(place + ahead(seconds_between(samples[i].stamp, fix.stamp)));
-    if (result.places.size() > 1) result.length_m += std::abs(result.places.back() - result.places.end()[-2]);
-  }
-  return result;
 }
 
 void centre(std::vector<Complex>& places) {

@@ -156,16 +156,14 @@ std::optional<Bursts> find_bursts(const SensorTable& rows) {
   return found;
 }
 
-std::string warning_of(const Bursts& bursts, const std::string& file) {
+std::string warning_of(const Bursts& bursts, const std::string& file, const std::string& readings) {
   const std::string what =
       bursts.are_cut_off
-          ? fmt::format(
-                "{}: the stamps are cut off: {} readings of the odometry share each of them, {:.3g} s apart",
-                file, bursts.size, bursts.period_s)
+          ? fmt::format("{}: the stamps are cut off: {} {} share each of them, {:.3g} s apart", file,
+                        bursts.size, readings, bursts.period_s)
           : fmt::format(
-                "{}: the odometry comes in bursts of {} readings within {:.3g} s, every {:.3g} s, as if stamped "
-                "when they arrive",
-                file, bursts.size, bursts.length_s, bursts.period_s);
+                "{}: bursts of {} {} come within {:.3g} s, every {:.3g} s, as if stamped when they arrive",
+                file, bursts.size, readings, bursts.length_s, bursts.period_s);
   if (bursts.spread.empty())
     return fmt::format(
         "{}; their changes do not tell that they were measured between, so the stamps are kept, and there is a gap "

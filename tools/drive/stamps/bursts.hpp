@@ -31,7 +31,8 @@ struct Bursts {
 /// @param rows in the order of the log
 [[nodiscard]] std::optional<Bursts> find_bursts(const SensorTable& rows);
 
-/// Returns the warning for them.
-[[nodiscard]] std::string warning_of(const Bursts& bursts, const std::string& file);
+/// Returns the warning for them. @param readings "readings of the odometry"
+[[nodiscard]] std::string warning_of(const Bursts& bursts, const std::string& file,
+                                     const std::string& readings = "readings of the odometry");
 
 }  // namespace waymark::drive

@@ -146,4 +146,18 @@ void settle_stamps(SensorTable& readings, const std::string& file, PrepareReport
   if (!bursts->spread.empty()) readings.stamps = bursts->spread;
 }
 
+void settle_bursts(std::span<GeodeticFix> fixes, const std::string& file, PrepareReport& report) {
+  SensorTable places;
+  places.columns = 2;
+  for (const GeodeticFix& fix : fixes) {
+    places.stamps.push_back(fix.stamp);
+    places.values.push_back(fix.latitude_deg);
+    places.values.push_back(fix.longitude_deg);
+  }
+  const std::optional<Bursts> bursts = find_bursts(places);
+  if (!bursts) return;
+  report.warnings.push_back(warning_of(*bursts, file, "fixes"));
+  for (std::size_t i = 0; i < bursts->spread.size(); ++i) fixes[i].stamp = bursts->spread[i];
+}
+
 }  // namespace waymark::drive

@@ -1,6 +1,7 @@
-/// What a log of odometry shows of its own stamps, before it is sorted.
+/// What a log shows of its own stamps, before it is sorted.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,5 +20,8 @@ void settle_stamps(std::vector<OdometrySample>& samples, std::size_t first, cons
 /// of rows that hold the same channels.
 /// @param readings NaN: not in this row
 void settle_stamps(SensorTable& readings, const std::string& file, PrepareReport& report);
+
+/// Spreads fixes of one log that come in bursts, and tells it.
+void settle_bursts(std::span<GeodeticFix> fixes, const std::string& file, PrepareReport& report);
 
 }  // namespace waymark::drive

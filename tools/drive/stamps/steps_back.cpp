@@ -16,14 +16,6 @@ constexpr double kGapIntervals = 4;
 constexpr std::size_t kFewestRows = 20;
 constexpr std::size_t kMostSteps = 10;
 
-/// Returns the usual interval between rows that differ in time; 0 if there is none.
-double usual_interval_s(const std::vector<Stamp>& stamps) {
-  std::vector<double> intervals;
-  for (std::size_t i = 1; i < stamps.size(); ++i)
-    if (stamps[i] > stamps[i - 1]) intervals.push_back(seconds_between(stamps[i - 1], stamps[i]));
-  return intervals.empty() ? 0 : upper_median(std::move(intervals));
-}
-
 bool equal_rows(const SensorTable& rows, std::size_t a, std::size_t b) {
   for (std::size_t c = 0; c < rows.columns; ++c)
     if (rows.at(a, c) != rows.at(b, c)) return false;
@@ -69,6 +61,13 @@ class Past {
 };
 
 }  // namespace
+
+double usual_interval_s(std::span<const Stamp> stamps) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < stamps.size(); ++i)
+    if (stamps[i] > stamps[i - 1]) intervals.push_back(seconds_between(stamps[i - 1], stamps[i]));
+  return intervals.empty() ? 0 : upper_median(std::move(intervals));
+}
 
 std::vector<StepBack> find_steps_back(const SensorTable& rows) {
   const double usual_s = usual_interval_s(rows.stamps);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct StepBack {
   std::vector<std::size_t> in_past{};  ///< rows behind it that lie between readings of that time
   double length_s = 0;                 ///< of the time of those rows
 };
+
+/// Returns the usual interval between stamps that rise; 0 if there is none. @param stamps in the order of the log
+[[nodiscard]] double usual_interval_s(std::span<const Stamp> stamps);
 
 /// Finds them: a stamp falls by more than five usual intervals, and 20 rows behind it or more lie between readings
 /// that stand above it and are at most four usual intervals apart. So parts of a log in another order are none, nor

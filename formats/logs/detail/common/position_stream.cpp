@@ -74,7 +74,7 @@ const char* PositionStream::stand_in(GeodeticFix& fix) {
   if (usual.sigma_m > 0) return take_sigma(fix, usual.sigma_m, false, usual_quality_[index]);
   return hdop_told ? "the log has no accuracy but HDOP: state 'range_error', which is multiplied by "
                      "HDOP, or 'accuracy: {default_sigma: ...}'"
-                   : "the log has no accuracy: state 'accuracy: {default_sigma: ...}'";
+                   : "the log has no accuracy (0 and less are none): state 'accuracy: {default_sigma: ...}'";
 }
 
 /// @param claimed the receiver told something about this fix that the sigma comes from

@@ -56,7 +56,7 @@ TEST_CASE("stamps: a packet of readings that arrives each second is spread over 
   REQUIRE(report.warnings.size() == 1);
   CHECK_THAT(
       report.warnings[0],
-      Catch::StartsWith("odo.csv: the odometry comes in bursts of 10 readings within 0.018 s, every 1 s"));
+      Catch::StartsWith("odo.csv: bursts of 10 readings of the odometry come within 0.018 s, every 1 s"));
   // The last one of 0.903 s arrives at 1.03806 s: a delay that all have.
   for (std::size_t i = 0; i < samples.size(); ++i)
     CHECK(samples[i].stamp.seconds() - 0.1 * static_cast<double>(i) == Approx(0.13806).margin(1e-6));
@@ -145,6 +145,34 @@ TEST_CASE("stamps: a table in packets is spread where its clock stepped back, to
   REQUIRE(table.size() == rows - 100);  // 10 s of 10 Hz
   CHECK(table.stamps[437].seconds() == Approx(43.7));
   CHECK(table.stamps[637].seconds() == Approx(73.7));
+}
+
+TEST_CASE("stamps: fixes that arrive five at once are spread over the time since those before") {
+  std::vector<GeodeticFix> fixes;
+  for (int i = 0; i < 200; ++i) {
+    GeodeticFix fix;
+    fix.stamp = Stamp::from_seconds(5.0 * (i / 5 + 1) + 0.05 * (i % 5));
+    fix.latitude_deg = 50 + 1e-4 * i;
+    fix.longitude_deg = 15 + 1e-5 * std::sin(0.1 * i);
+    fixes.push_back(fix);
+  }
+  PrepareReport report;
+  settle_bursts(fixes, "gnss.csv", report);
+  REQUIRE(report.warnings.size() == 1);
+  CHECK_THAT(report.warnings[0],
+             Catch::StartsWith("gnss.csv: bursts of 5 fixes come within 0.2 s, every 5 s"));
+  // the last one of a burst is stamped when it arrives
+  for (int i = 0; i < 200; ++i)
+    CHECK(fixes[static_cast<std::size_t>(i)].stamp.seconds() == Approx(i + 1.2).margin(1e-6));
+}
+
+TEST_CASE("stamps: fixes at even times stay where they are") {
+  std::vector<GeodeticFix> fixes(200);
+  for (std::size_t i = 0; i < fixes.size(); ++i) fixes[i].stamp = Stamp::from_seconds(static_cast<double>(i));
+  PrepareReport report;
+  settle_bursts(fixes, "gnss.csv", report);
+  CHECK(report.warnings.empty());
+  CHECK(fixes[150].stamp.seconds() == 150);
 }
 
 }  // namespace bursts_test
