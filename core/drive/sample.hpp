@@ -153,7 +153,11 @@ struct Fix {
   /// displacement error in the gate; NaN: not computed
   double displacement_m = std::numeric_limits<double>::quiet_NaN();
   Eigen::Vector2d antenna_m{0, 0};  ///< of its receiver in the body frame (x forward, y left)
-  Eigen::Vector2d smoothed_m{0, 0};  ///< where its receiver has the antenna beside where it is, because it smooths
+  /// where its receiver has the antenna beside where it is, because it smooths
+  Eigen::Vector2d smoothed_m{0, 0};
+  /// lasting jumps of its receiver so far: fixes of two levels share no slow error
+  int level = 0;
+  double jump_sigma_m = 0;  ///< per axis, of the part of the slow error that the jumps beside it leave open
   FixDetails told = {};
 
   /// Returns where its receiver has the antenna, in the body frame.

@@ -20,7 +20,7 @@
 namespace WAYMARK_EXPORT waymark {
 
 /// Raised if a type that crosses the boundary changes its layout or meaning.
-inline constexpr std::uint32_t kPluginAbi = 26;
+inline constexpr std::uint32_t kPluginAbi = 27;
 inline constexpr std::uint32_t kPluginMagic = 0x57415950;  // "WAYP"
 
 /// The properties of a build that decide whether two binaries may share types.

@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include <waymark/core/linear/dense_decompositions.hpp>
@@ -23,6 +23,9 @@ constexpr double kStudentInformation = 1.5;
 const double kStudentScale = std::sqrt(6.0);
 /// Standard deviation over scale: sqrt(nu / (nu - 2)).
 const double kStudentDeviation = std::sqrt(2.0);
+
+using Bias = GaussMarkovProcess<VertexGnssBias, EdgeGnssBiasDecay, EdgeGnssBiasBetween>;
+using Multipath = GaussMarkovProcess<VertexGnssMultipath, EdgeGnssMultipathDecay, EdgeGnssMultipathBetween>;
 
 struct ErrorModel {
   double white_m = 0;
@@ -60,6 +63,16 @@ struct ErrorModel {
     return std::hypot(floor_m, bias_share * multipath_m * kind_scale(claimed, kind));
   }
 
+  /// Returns the slow error of fixes like this one, from the first of them on. What a lasting jump leaves open makes it
+  /// larger, and it wanders no faster.
+  [[nodiscard]] Bias bias_of(const Fix& fix, const ClaimedAccuracies& claimed) const {
+    const SolutionKind kind = kind_of(fix.told.quality);
+    const double usual_m = bias_m(claimed, kind);
+    const double sigma_m = std::hypot(usual_m, fix.jump_sigma_m);
+    const double widened = usual_m > 0 ? std::pow(sigma_m / usual_m, 2) : 1;
+    return {sigma_m, widened * bias_time_s, first_bias_m(claimed, kind)};
+  }
+
   /// Returns the symmetric root of a fix's relative covariance. Within a kind of solution the claimed
   /// accuracies are used relative to their median: receivers know which fix is worse better than they know
   /// how bad it is. A stand-in for a claim says nothing.
@@ -89,9 +102,6 @@ struct ErrorModel {
   }
 };
 
-using Bias = GaussMarkovProcess<VertexGnssBias, EdgeGnssBiasDecay, EdgeGnssBiasBetween>;
-using Multipath = GaussMarkovProcess<VertexGnssMultipath, EdgeGnssMultipathDecay, EdgeGnssMultipathBetween>;
-
 /// measured = antenna + bias + multipath + white noise: see README.md.
 class GnssCorrelated final : public GnssModeling {
  public:
@@ -103,15 +113,12 @@ class GnssCorrelated final : public GnssModeling {
     std::vector<ExpectedError> errors;
     for (const Fix& fix : fixes) {
       ExpectedError& error = errors.emplace_back();
-      const SolutionKind kind = kind_of(fix.told.quality);
       const Eigen::Matrix2d root = model_.relative_root(fix, claimed_);
       if (multipath_) multipath_->add_expectation(fix.stamp, minimum, model_.multipath_m * root, error);
-      if (const auto bias = biases_.find({fix.source, kind}); bias != biases_.end())
+      if (const auto bias = biases_.find(bias_key(fix)); bias != biases_.end())
         bias->second.add_expectation(fix.stamp, minimum, Eigen::Matrix2d::Identity(), error);
       else
-        error.rest +=
-            (std::pow(model_.bias_m(claimed_, kind), 2) + std::pow(model_.first_bias_m(claimed_, kind), 2)) *
-            Eigen::Matrix2d::Identity();
+        error.rest += std::pow(model_.bias_of(fix, claimed_).first_sigma(), 2) * Eigen::Matrix2d::Identity();
       const double white = model_.white_m * (model_.heavy_tails ? kStudentDeviation : 1);
       error.rest += white * white * root * root;
     }
@@ -132,11 +139,7 @@ class GnssCorrelated final : public GnssModeling {
     for (std::size_t i = 0; i < input.fixes.size(); ++i) {
       const Fix& fix = input.fixes[i];
       const Eigen::Matrix2d root = model_.relative_root(fix, claimed_);
-      const SolutionKind kind = kind_of(fix.told.quality);
-      Bias& bias = biases_
-                       .try_emplace({fix.source, kind}, model_.bias_m(claimed_, kind), model_.bias_time_s,
-                                    model_.first_bias_m(claimed_, kind))
-                       .first->second;
+      Bias& bias = biases_.try_emplace(bias_key(fix), model_.bias_of(fix, claimed_)).first->second;
       const VertexIndex pose = pose_vertex(fix, graph);
       EdgeGnssPositionCorrelated edge;
       edge.measured = fix.position;
@@ -152,6 +155,12 @@ class GnssCorrelated final : public GnssModeling {
   }
 
  private:
+  /// What fixes of one slow error have in common.
+  using BiasKey = std::tuple<int, SolutionKind, int>;
+  [[nodiscard]] static BiasKey bias_key(const Fix& fix) {
+    return {fix.source, kind_of(fix.told.quality), fix.level};
+  }
+
   [[nodiscard]] VertexIndex make_offset(Graph& graph, double assumed_s) const {
     if (time_offset_sigma_s_ > 0) return add_time_offset(graph, time_offset_sigma_s_, assumed_s);
     const VertexIndex none = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {assumed_s});
@@ -165,9 +174,9 @@ class GnssCorrelated final : public GnssModeling {
   KeptVertex origin_;
   KeptVertex offset_;
   /// Sources in a group share the error of the seconds. Each has a bias of its own: a constant difference
-  /// between two antennas would otherwise turn the vehicle. So has each kind of solution.
+  /// between two antennas would otherwise turn the vehicle. So has each kind of solution, and each side of a jump.
   std::optional<Multipath> multipath_;
-  std::map<std::pair<int, SolutionKind>, Bias> biases_;
+  std::map<BiasKey, Bias> biases_;
 };
 
 std::vector<OptionInfo> options() {

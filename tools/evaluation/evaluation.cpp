@@ -196,6 +196,7 @@ std::vector<EpochResult> epochs_without_truth(const EvaluationInput& input) {
       epochs[i].status = fix.status;
       epochs[i].reason = fix.reason;
       epochs[i].fix_sigma_m = fix.covariance.diagonal().cwiseSqrt();
+      epochs[i].jump_sigma_m = fix.jump_sigma_m;
       epochs[i].told = fix.told;
     }
     if (!input.heading_sigmas_rad.empty()) epochs[i].heading_sigma_rad = input.heading_sigmas_rad[i];

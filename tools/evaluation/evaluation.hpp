@@ -76,6 +76,7 @@ struct EpochResult {
   std::string reason;               ///< reason for the status
   /// stated by the receiver: grid east, north
   Eigen::Vector2d fix_sigma_m{kUndefined, kUndefined};
+  double jump_sigma_m = 0;                             ///< Fix::jump_sigma_m
   std::optional<double> speed_mps;                     ///< fused; see fused_speeds
   std::optional<Eigen::Matrix2d> position_covariance;  ///< stated, of the fused position, m^2
   std::optional<Eigen::Vector2d> gnss_offset_m;        ///< raw fix - truth, at the body point

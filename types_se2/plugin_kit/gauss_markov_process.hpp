@@ -86,6 +86,9 @@ class GaussMarkovProcess {
   GaussMarkovProcess(double sigma, double time_s, double first_sigma = 0)
       : sigma_(sigma), time_s_(time_s), first_sigma_(std::hypot(sigma, first_sigma)) {}
 
+  /// Returns the sigma of the first state.
+  [[nodiscard]] double first_sigma() const { return first_sigma_; }
+
   /// Returns the state at a moment; the first call for it makes the state, at its expectation. Moments may
   /// come in any order.
   [[nodiscard]] VertexIndex at(Stamp stamp, Graph& graph) {

@@ -8,7 +8,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/plugins/odometry/calibration.hpp>
 #include <waymark/plugins/odometry/edge_odometry.hpp>
-#include <waymark/tools/drive/model/outages.hpp>
+#include <waymark/tools/drive/left_out/outages.hpp>
 #include <waymark/tools/evaluation/numbers/withheld.hpp>
 
 namespace evaluation_outages_test {

@@ -5,7 +5,7 @@
 
 #include <waymark/tools/drive/model/fuse.hpp>
 #include <waymark/tools/drive/model/poses_at_fixes.hpp>
-#include <waymark/tools/drive/model/without_source.hpp>
+#include <waymark/tools/drive/left_out/without_source.hpp>
 #include <waymark/tools/evaluation/evaluation.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
 #include <waymark/tools/simulation/source_statistics.hpp>

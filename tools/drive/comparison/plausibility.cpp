@@ -294,6 +294,9 @@ std::vector<std::string> jumps_in_words(const ReckonedFixes& receiver) {
     const bool jumps_back = std::any_of(jumps.begin(), jumps.end(), [&](const Jump& before) {
       return before.undone && before.end == jumps[i].settled;
     });
+    const std::vector<Fix>& fixes = receiver.fixes;
+    // one that the fusion knows is told there
+    if (fixes[jumps[i].settled].level != fixes[jumps[i].first - 1].level) continue;
     const bool at_once = jumps[i].usual_m == 0;  // what takes time and stays may be the odometry's
     const bool is_told = at_once && (jumps[i].by.norm() >= kLarge_m || jumps[i].claimed_m > 0);
     if (!jumps_back && (jumps[i].undone || is_told)) sentences.push_back(in_words(jumps[i], receiver));

@@ -100,7 +100,7 @@ class Fusion {
   /// speeds slip or that was not moved rightly is freed of that (clock_drift.hpp, speed_slip.hpp, lag_left.hpp), and told.
   /// @throws InputError if the odometry or the positions were read in a wrong unit or sense (misreading.hpp);
   /// errors of the steps
-  [[nodiscard]] ModeledDrive model(const FusionSettings& settings);
+  [[nodiscard]] ModeledDrive model(const FusionSettings& stated);
   /// Does all steps. @throws errors of the steps
   [[nodiscard]] FusedDrive fuse(const FusionSettings& settings, const MinimizationWatch& watch = {});
 
@@ -138,6 +138,10 @@ class Fusion {
   /// Moves the quantity that was late alone by what is left of that. Its search decides, because costs of drives that
   /// stand at other readings cannot be compared.
   void settle_moved_quantity(const FusionSettings& settings, Freed& freed) const;
+  /// Takes receivers that err alike for a group, if that is more probable. @returns the settings with that
+  [[nodiscard]] FusionSettings with_common_errors(const FusionSettings& stated, Freed& freed);
+  /// Gives fixes on both sides of a lasting jump slow errors of their own, if that is more probable.
+  void part_at_jumps(const FusionSettings& settings, Freed& freed) const;
   /// Takes out of the fixes that the only receiver smooths them, if that is more probable.
   void free_of_smoothing(const FusionSettings& settings, Freed& freed) const;
   void free_of_slip(const FusionSettings& settings, Freed& freed) const;

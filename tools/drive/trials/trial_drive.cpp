@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include <waymark/core/linear/block_cholesky.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/tools/drive/model/build.hpp>
@@ -37,6 +39,14 @@ Eigen::Vector2d TrialDrive::velocity_at(std::size_t fix) const {
   const double speed_mps = timeline.intervals[std::min(node, timeline.intervals.size() - 1)].speed_mps;
   const double heading_rad = coarse_.drive.start.poses[node][2];
   return speed_mps * Eigen::Vector2d(std::cos(heading_rad), std::sin(heading_rad));
+}
+
+Eigen::Vector2d TrialDrive::left_of_fix(std::size_t fix) const {
+  const Fix& of = coarse_.drive.fixes[fix];
+  const auto pose = graph_.value(static_cast<VertexIndex>(coarse_.drive.timeline.fix_node[fix]));
+  const Eigen::Vector2d antenna = Eigen::Rotation2Dd(pose[2]) * of.antenna_seen_m();
+  const double late_s = coarse_.drive.time_offsets_s[static_cast<std::size_t>(of.source)];
+  return of.position - Eigen::Vector2d(pose[0], pose[1]) - antenna + late_s * velocity_at(fix);
 }
 
 double TrialDrive::spread(double cost) const {

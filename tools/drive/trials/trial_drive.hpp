@@ -36,6 +36,9 @@ class TrialDrive {
   [[nodiscard]] const PlacedDrive& drive() const { return coarse_.drive; }
   /// Returns the velocity of the vehicle at a fix, m/s, in the frame.
   [[nodiscard]] Eigen::Vector2d velocity_at(std::size_t fix) const;
+  /// Returns what the poses of the last fusion leave of a fix: its position less that of the antenna when it was
+  /// measured, m, in the frame.
+  [[nodiscard]] Eigen::Vector2d left_of_fix(std::size_t fix) const;
   /// Returns how many times its own noise each fix costs: what no state explains makes a cost steeper than it is known.
   [[nodiscard]] double spread(double cost) const;
   /// Returns the least of a cost near a place; empty where it is not curved upwards.

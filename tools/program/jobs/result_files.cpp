@@ -2,7 +2,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
-#include <waymark/tools/drive/model/outages.hpp>
+#include <waymark/tools/drive/left_out/outages.hpp>
 #include <waymark/tools/evaluation/output/epochs_csv.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/jobs/result_files.hpp>

@@ -83,8 +83,8 @@ void check_innovations(const evaluation::InnovationStatistics& fixes, std::vecto
           : ""));
 }
 
-/// Errors that last are states, which take in whatever the odometry does wrong. Each fix is compared with its own claim,
-/// and a few wild ones say nothing about the others.
+/// Errors that last are states, which take in whatever the odometry does wrong. Each fix is compared with its own claim
+/// and what a lasting jump leaves open, and a few wild ones say nothing about the others.
 void check_distances(const std::vector<evaluation::EpochResult>& epochs, std::vector<std::string>& warnings) {
   constexpr std::size_t kFewest = 30;
   constexpr double kFactor = 10;
@@ -96,7 +96,7 @@ void check_distances(const std::vector<evaluation::EpochResult>& epochs, std::ve
   for (const evaluation::EpochResult& epoch : epochs) {
     if (epoch.status != FixStatus::accepted || !epoch.fix_residual_m) continue;
     ++accepted;
-    const double claim_m = epoch.fix_sigma_m.norm() / std::sqrt(2);
+    const double claim_m = std::hypot(epoch.fix_sigma_m.norm() / std::sqrt(2), epoch.jump_sigma_m);
     if (!(epoch.fix_residual_m->norm() > std::max(kLeast_m, kFactor * claim_m))) continue;
     squares += epoch.fix_residual_m->squaredNorm();
     claims_of_far.push_back(claim_m);

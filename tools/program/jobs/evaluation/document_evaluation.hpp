@@ -6,7 +6,7 @@
 
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/tools/drive/description/drive_description.hpp>
-#include <waymark/tools/drive/model/outages.hpp>
+#include <waymark/tools/drive/left_out/outages.hpp>
 #include <waymark/tools/evaluation/evaluation.hpp>
 
 namespace waymark::program {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/model/outages.hpp>
+#include <waymark/tools/drive/left_out/outages.hpp>
 #include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
 #include <waymark/tools/program/jobs/evaluation/lasting_innovations.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>

@@ -12,7 +12,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/estimation/noise_spread.hpp>
 #include <waymark/tools/drive/model/poses_at_fixes.hpp>
-#include <waymark/tools/drive/model/without_source.hpp>
+#include <waymark/tools/drive/left_out/without_source.hpp>
 #include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/types_se2/se2.hpp>

@@ -1,4 +1,4 @@
-#include <waymark/tools/drive/model/outages.hpp>
+#include <waymark/tools/drive/left_out/outages.hpp>
 
 #include <algorithm>
 #include <string>

@@ -1,4 +1,4 @@
-#include <waymark/tools/drive/model/without_source.hpp>
+#include <waymark/tools/drive/left_out/without_source.hpp>
 
 #include <algorithm>
 
