@@ -2,6 +2,7 @@
 /// fusion. fusion_settings.hpp defines how the drive is fused.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <optional>
@@ -18,7 +19,6 @@
 #include <waymark/tools/drive/logs/memory_log.hpp>
 #include <waymark/tools/drive/logs/parts/odometry_parts.hpp>
 #include <waymark/tools/drive/nodes/timeline.hpp>
-#include <waymark/tools/drive/stamps/stamp_steps.hpp>
 
 namespace waymark::drive {
 
@@ -33,6 +33,13 @@ struct LogConfig {
   std::string place;  ///< "drive.yaml:12:5: " of the entry, for messages
   /// The log itself, which is then not read: `file` is its name for messages, and `format` means nothing.
   std::shared_ptr<const MemoryLog> samples{};
+};
+
+/// A place of a log at which the stamps rise or fall by more than they usually do.
+struct StampStep {
+  std::size_t row = 0;  ///< the first one behind it, in the order of the log
+  Stamp before;         ///< of the row above it
+  double by_s = 0;      ///< the stamp of the row less what it would be after a usual interval
 };
 
 /// A relative source: the logs of speed and yaw rate.

@@ -20,7 +20,6 @@ constexpr std::size_t kFewestNear = 5;
 
 /// What the poses leave of the fixes of one receiver, without those that are not in the graph.
 struct Left {
-  std::vector<std::size_t> fix;  ///< of the drive
   std::vector<Stamp> stamps;
   std::vector<Eigen::Vector2d> off_m;  ///< fix minus antenna
 
@@ -47,7 +46,6 @@ Left left_of(int source, const TrialDrive& trial) {
   const std::vector<Fix>& fixes = trial.drive().fixes;
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     if (fixes[i].source != source || fixes[i].status != FixStatus::accepted) continue;
-    left.fix.push_back(i);
     left.stamps.push_back(fixes[i].stamp);
     left.off_m.push_back(trial.left_of_fix(i));
   }
