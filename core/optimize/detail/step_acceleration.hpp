@@ -35,7 +35,8 @@ class StepAcceleration {
     Eigen::VectorXd by;      ///< from the values of one step to those of the next one
     Eigen::VectorXd change;  ///< of the step
   };
-  void remember(const Eigen::VectorXd& step);
+  /// The one that is told next, or complete with the next step.
+  [[nodiscard]] Move& present() { return moves_[static_cast<std::size_t>(next_)]; }
 
   std::array<Move, kMemory> moves_;  ///< in turn
   int count_ = 0;                    ///< of those that are known
@@ -43,12 +44,11 @@ class StepAcceleration {
   bool knows_step_ = false;
   bool knows_move_ = false;
   Eigen::VectorXd last_step_;
-  Eigen::VectorXd last_move_;
   Eigen::VectorXd accelerated_;
 };
 
 inline StepAcceleration::StepAcceleration(Eigen::Index unknowns)
-    : last_step_(unknowns), last_move_(unknowns), accelerated_(unknowns) {
+    : last_step_(unknowns), accelerated_(unknowns) {
   for (Move& move : moves_) {
     move.by.resize(unknowns);
     move.change.resize(unknowns);
@@ -66,17 +66,13 @@ inline void StepAcceleration::begin(const Eigen::VectorXd& step) {
   knows_step_ = true;
 }
 
-inline void StepAcceleration::remember(const Eigen::VectorXd& step) {
-  Move& move = moves_[static_cast<std::size_t>(next_)];
-  move.by = last_move_;
-  move.change = step - last_step_;
-  next_ = (next_ + 1) % kMemory;
-  count_ = std::min(count_ + 1, kMemory);
-}
-
 inline bool StepAcceleration::accelerate(const Eigen::VectorXd& step, const Eigen::VectorXd& weights) {
   constexpr double kDamping = 1e-8;  // of directions that the moves hardly show
-  if (knows_step_ && knows_move_) remember(step);
+  if (knows_step_ && knows_move_) {
+    present().change = step - last_step_;
+    next_ = (next_ + 1) % kMemory;
+    count_ = std::min(count_ + 1, kMemory);
+  }
   last_step_ = step;
   knows_step_ = true;
   knows_move_ = false;
@@ -102,7 +98,7 @@ inline bool StepAcceleration::accelerate(const Eigen::VectorXd& step, const Eige
 
 inline void StepAcceleration::moved(const Eigen::VectorXd& by) {
   if (!knows_step_) return;
-  last_move_ = by;
+  present().by = by;
   knows_move_ = true;
 }
 

@@ -33,6 +33,6 @@ struct Bursts {
 
 /// Returns the warning for them. @param readings "readings of the odometry"
 [[nodiscard]] std::string warning_of(const Bursts& bursts, const std::string& file,
-                                     const std::string& readings = "readings of the odometry");
+                                     const std::string& readings);
 
 }  // namespace waymark::drive

@@ -103,6 +103,17 @@ void leave_out_emptied(SensorTable& readings, const std::vector<char>& has_lost)
   readings = std::move(kept);
 }
 
+/// Tells of bursts. @returns the stamps that spread them; empty if there are none to spread
+std::vector<Stamp> spread_bursts(const SensorTable& rows, const std::string& file,
+                                 const std::string& readings, PrepareReport& report) {
+  std::optional<Bursts> bursts = find_bursts(rows);
+  if (!bursts) return {};
+  report.warnings.push_back(warning_of(*bursts, file, readings));
+  return std::move(bursts->spread);
+}
+
+constexpr const char* kOfOdometry = "readings of the odometry";
+
 }  // namespace
 
 void settle_stamps(std::vector<OdometrySample>& samples, std::size_t first, const std::string& file,
@@ -117,10 +128,8 @@ void settle_stamps(std::vector<OdometrySample>& samples, std::size_t first, cons
   for (std::size_t i = 0; i < in_past.size(); ++i)
     if (in_past[i] == 0) samples[kept++] = samples[first + i];
   samples.resize(kept);
-  const std::optional<Bursts> bursts = find_bursts(table_of(samples, first));
-  if (!bursts) return;
-  report.warnings.push_back(warning_of(*bursts, file));
-  for (std::size_t i = 0; i < bursts->spread.size(); ++i) samples[first + i].stamp = bursts->spread[i];
+  const std::vector<Stamp> spread = spread_bursts(table_of(samples, first), file, kOfOdometry, report);
+  for (std::size_t i = 0; i < spread.size(); ++i) samples[first + i].stamp = spread[i];
 }
 
 void settle_stamps(SensorTable& readings, const std::string& file, PrepareReport& report) {
@@ -140,10 +149,8 @@ void settle_stamps(SensorTable& readings, const std::string& file, PrepareReport
   leave_out_emptied(readings, has_lost);
   const auto common = common_channels(readings);
   if (common.columns == 0) return;  // frames of several channels one after another are no bursts
-  const std::optional<Bursts> bursts = find_bursts(common);
-  if (!bursts) return;
-  report.warnings.push_back(warning_of(*bursts, file));
-  if (!bursts->spread.empty()) readings.stamps = bursts->spread;
+  std::vector<Stamp> spread = spread_bursts(common, file, kOfOdometry, report);
+  if (!spread.empty()) readings.stamps = std::move(spread);
 }
 
 void settle_bursts(std::span<GeodeticFix> fixes, const std::string& file, PrepareReport& report) {
@@ -154,10 +161,8 @@ void settle_bursts(std::span<GeodeticFix> fixes, const std::string& file, Prepar
     places.values.push_back(fix.latitude_deg);
     places.values.push_back(fix.longitude_deg);
   }
-  const std::optional<Bursts> bursts = find_bursts(places);
-  if (!bursts) return;
-  report.warnings.push_back(warning_of(*bursts, file, "fixes"));
-  for (std::size_t i = 0; i < bursts->spread.size(); ++i) fixes[i].stamp = bursts->spread[i];
+  const std::vector<Stamp> spread = spread_bursts(places, file, "fixes", report);
+  for (std::size_t i = 0; i < spread.size(); ++i) fixes[i].stamp = spread[i];
 }
 
 }  // namespace waymark::drive

@@ -12,47 +12,29 @@
 namespace waymark::drive {
 namespace {
 
-/// What the poses leave of the fixes of a receiver.
-struct LeftOf {
-  std::vector<Stamp> stamps;
-  std::vector<Eigen::Vector2d> off_m;
-
-  /// Returns the one nearest to a moment. @return its place; that of none is `stamps.size()`
-  [[nodiscard]] std::size_t near(Stamp stamp) const {
-    constexpr double kSame_s = 1.5;
-    const auto after = std::lower_bound(stamps.begin(), stamps.end(), stamp);
-    std::size_t nearest = stamps.size();
-    double apart_s = kSame_s;
-    for (auto at = after == stamps.begin() ? after : after - 1; at != stamps.end() && at <= after; ++at) {
-      if (std::abs(seconds_between(*at, stamp)) > apart_s) continue;
-      apart_s = std::abs(seconds_between(*at, stamp));
-      nearest = static_cast<std::size_t>(at - stamps.begin());
-    }
-    return nearest;
+/// Returns the fix nearest to a moment, of those within 1.5 s; their number if there is none.
+std::size_t near(Stamp stamp, const std::vector<Stamp>& stamps) {
+  constexpr double kSame_s = 1.5;
+  const auto after = std::lower_bound(stamps.begin(), stamps.end(), stamp);
+  std::size_t nearest = stamps.size();
+  double apart_s = kSame_s;
+  for (auto at = after == stamps.begin() ? after : after - 1; at != stamps.end() && at <= after; ++at) {
+    if (std::abs(seconds_between(*at, stamp)) > apart_s) continue;
+    apart_s = std::abs(seconds_between(*at, stamp));
+    nearest = static_cast<std::size_t>(at - stamps.begin());
   }
-};
-
-std::vector<LeftOf> left_of_all(const TrialDrive& trial) {
-  std::vector<LeftOf> all(trial.drive().receivers.size());
-  const std::vector<Fix>& fixes = trial.drive().fixes;
-  for (std::size_t i = 0; i < fixes.size(); ++i) {
-    if (fixes[i].status != FixStatus::accepted) continue;
-    LeftOf& left = all[static_cast<std::size_t>(fixes[i].source)];
-    left.stamps.push_back(fixes[i].stamp);
-    left.off_m.push_back(trial.left_of_fix(i));
-  }
-  return all;
+  return nearest;
 }
 
 /// Returns the correlation of what is left of two receivers, about zero: a constant error of both counts. 0 for few.
-double correlation(const LeftOf& one, const LeftOf& other) {
+double correlation(const LeftOfFixes& one, const LeftOfFixes& other) {
   constexpr std::size_t kFewestPairs = 30;
   double squares_one = 0;
   double squares_other = 0;
   double products = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < one.stamps.size(); ++i) {
-    const std::size_t j = other.near(one.stamps[i]);
+    const std::size_t j = near(one.stamps[i], other.stamps);
     if (j == other.stamps.size()) continue;
     squares_one += one.off_m[i].squaredNorm();
     squares_other += other.off_m[j].squaredNorm();
@@ -84,7 +66,8 @@ std::map<std::string, std::string> find_common_errors(
   std::map<std::string, std::string> common;
   if (placed.receivers.size() < 2 || !registry.gnss_modeling(settings.modeling).shares_errors) return common;
   const TrialDrive trial(sample_of(coarsen(placed, sensors, kFixPeriod_s)), settings, registry, between);
-  const std::vector<LeftOf> left = left_of_all(trial);
+  std::vector<LeftOfFixes> left;
+  for (int source = 0; source < std::ssize(placed.receivers); ++source) left.push_back(trial.left_of(source));
   for (std::size_t other = 1; other < left.size(); ++other) {
     if (is_stated(placed.receivers[other], stated)) continue;
     for (std::size_t first = 0; first < other; ++first) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -18,42 +20,27 @@ constexpr double kSide_s = 120;
 constexpr double kNear_s = 10;
 constexpr std::size_t kFewestNear = 5;
 
-/// What the poses leave of the fixes of one receiver, without those that are not in the graph.
-struct Left {
-  std::vector<Stamp> stamps;
-  std::vector<Eigen::Vector2d> off_m;  ///< fix minus antenna
+/// Returns the mean of what is left over a time and a number of fixes, from one on, forwards (step 1) or backwards.
+Eigen::Vector2d mean_from(std::size_t first, int step, double duration_s, const LeftOfFixes& left) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  std::size_t count = 0;
+  for (auto i = static_cast<std::ptrdiff_t>(first); i >= 0 && i < std::ssize(left.stamps); i += step) {
+    const auto at = static_cast<std::size_t>(i);
+    if (count >= kFewestNear && std::abs(seconds_between(left.stamps[first], left.stamps[at])) > duration_s)
+      break;
+    sum += left.off_m[at];
+    ++count;
+  }
+  return sum / static_cast<double>(count);
+}
 
-  /// Returns the mean over a time and a number of fixes, from one on, forwards (step 1) or backwards.
-  [[nodiscard]] Eigen::Vector2d mean_from(std::size_t first, int step, double duration_s) const {
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-    std::size_t count = 0;
-    for (auto i = static_cast<std::ptrdiff_t>(first); i >= 0 && i < std::ssize(stamps); i += step) {
-      const auto at = static_cast<std::size_t>(i);
-      if (count >= kFewestNear && std::abs(seconds_between(stamps[first], stamps[at])) > duration_s) break;
-      sum += off_m[at];
-      ++count;
-    }
-    return sum / static_cast<double>(count);
-  }
-  /// Returns what changes from the fixes before one to it and those after it.
-  [[nodiscard]] Eigen::Vector2d change_at(std::size_t i, double duration_s) const {
-    return mean_from(i, 1, duration_s) - mean_from(i - 1, -1, duration_s);
-  }
-};
-
-Left left_of(int source, const TrialDrive& trial) {
-  Left left;
-  const std::vector<Fix>& fixes = trial.drive().fixes;
-  for (std::size_t i = 0; i < fixes.size(); ++i) {
-    if (fixes[i].source != source || fixes[i].status != FixStatus::accepted) continue;
-    left.stamps.push_back(fixes[i].stamp);
-    left.off_m.push_back(trial.left_of_fix(i));
-  }
-  return left;
+/// Returns what changes from the fixes before one to it and those after it.
+Eigen::Vector2d change_at(std::size_t i, double duration_s, const LeftOfFixes& left) {
+  return mean_from(i, 1, duration_s, left) - mean_from(i - 1, -1, duration_s, left);
 }
 
 /// Tells whether the fixes before and from a moment on last long enough, up to the known jumps of their receiver.
-bool has_sides(Stamp at, int source, const Left& left, std::span<const LastingJump> known) {
+bool has_sides(Stamp at, int source, const LeftOfFixes& left, std::span<const LastingJump> known) {
   if (seconds_between(left.stamps.front(), at) < kSide_s || seconds_between(at, left.stamps.back()) < kSide_s)
     return false;
   return std::none_of(known.begin(), known.end(), [&](const LastingJump& jump) {
@@ -62,7 +49,8 @@ bool has_sides(Stamp at, int source, const Left& left, std::span<const LastingJu
 }
 
 /// Returns the places at which what is left changes most, the largest change first.
-std::vector<LastingJump> candidates_of(int source, const Left& left, std::span<const LastingJump> known) {
+std::vector<LastingJump> candidates_of(int source, const LeftOfFixes& left,
+                                       std::span<const LastingJump> known) {
   constexpr double kUnusual = 4;  // of the median; of a normal distribution in the plane once in 60,000 times
   constexpr std::size_t kMost = 3;
   constexpr std::size_t kFewestChanges = 20;
@@ -70,7 +58,7 @@ std::vector<LastingJump> candidates_of(int source, const Left& left, std::span<c
   std::vector<double> sizes;
   for (std::size_t i = 1; i < left.stamps.size(); ++i) {
     if (!has_sides(left.stamps[i], source, left, known)) continue;
-    changes.push_back({source, left.stamps[i], left.change_at(i, kNear_s)});
+    changes.push_back({source, left.stamps[i], change_at(i, kNear_s, left)});
     sizes.push_back(changes.back().by.norm());
   }
   if (changes.size() < kFewestChanges) return {};
@@ -95,16 +83,13 @@ double cost_with(std::span<const LastingJump> known, const LastingJump& jump, Tr
   return trial.cost_with([&](PlacedDrive& drive) { take_jumps(all, drive.fixes); });
 }
 
-/// Returns the cost with another level between two moments alone.
-double cost_between(Stamp from, Stamp to, const LastingJump& jump, TrialDrive& trial) {
+/// Returns the cost with another level between two moments alone, beside those of the known jumps.
+double cost_between(Stamp from, Stamp to, std::span<const LastingJump> known, const LastingJump& jump,
+                    TrialDrive& trial) {
   return trial.cost_with([&](PlacedDrive& drive) {
-    const int highest =
-        std::max_element(drive.fixes.begin(), drive.fixes.end(), [](const Fix& a, const Fix& b) {
-          return a.level < b.level;
-        })->level;
     for (Fix& fix : drive.fixes) {
       if (fix.source != jump.source || fix.stamp < from || to <= fix.stamp) continue;
-      fix.level = highest + 1;
+      fix.level = static_cast<int>(known.size()) + 1;
       fix.jump_sigma_m = 0.5 * jump.by.norm();
     }
   });
@@ -117,9 +102,10 @@ double gain_of(double cost, const TrialDrive& trial) {
 }
 
 /// Tells whether a jump that lasts is more probable than fixes that are elsewhere for some time before or after it.
-bool lasts(const LastingJump& jump, double cost, TrialDrive& trial) {
-  return std::min(cost_between(jump.at, jump.at.later(kSide_s), jump, trial),
-                  cost_between(jump.at.later(-kSide_s), jump.at, jump, trial)) > cost + gain_of(cost, trial);
+bool lasts(const LastingJump& jump, std::span<const LastingJump> known, double cost, TrialDrive& trial) {
+  return std::min(cost_between(jump.at, jump.at.later(kSide_s), known, jump, trial),
+                  cost_between(jump.at.later(-kSide_s), jump.at, known, jump, trial)) >
+         cost + gain_of(cost, trial);
 }
 
 /// The poses of a drive without the jump go along with it, so that it looks smaller.
@@ -137,9 +123,9 @@ LastingJump measured(LastingJump jump, std::span<const LastingJump> known, Trial
   for (int round = 0; round < kMostRounds; ++round) {
     const double before_m = jump.by.norm();
     (void)cost_with(known, wider(jump), trial);
-    const Left left = left_of(jump.source, trial);
+    const LeftOfFixes left = trial.left_of(jump.source);
     const auto at = std::find(left.stamps.begin(), left.stamps.end(), jump.at);
-    jump.by = left.change_at(static_cast<std::size_t>(at - left.stamps.begin()), kFar_s);
+    jump.by = change_at(static_cast<std::size_t>(at - left.stamps.begin()), kFar_s, left);
     if (jump.by.norm() < kSame * before_m) break;
   }
   return jump;
@@ -184,7 +170,7 @@ std::optional<LastingJump> find_lasting_jump(const PlacedDrive& placed, std::spa
                    registry, between);
   std::vector<LastingJump> candidates;
   for (int source = 0; source < std::ssize(placed.receivers); ++source) {
-    const Left left = left_of(source, trial);
+    const LeftOfFixes left = trial.left_of(source);
     if (left.stamps.empty()) continue;
     for (const LastingJump& candidate : candidates_of(source, left, known)) candidates.push_back(candidate);
   }
@@ -194,7 +180,7 @@ std::optional<LastingJump> find_lasting_jump(const PlacedDrive& placed, std::spa
   std::optional<LastingJump> best;
   for (const LastingJump& candidate : candidates) {
     const double cost = cost_with(known, wider(candidate), trial);
-    if (!(cost < least) || !lasts(wider(candidate), cost, trial)) continue;
+    if (!(cost < least) || !lasts(wider(candidate), known, cost, trial)) continue;
     least = cost;
     best = candidate;
   }
@@ -205,21 +191,17 @@ std::optional<LastingJump> find_lasting_jump(const PlacedDrive& placed, std::spa
 }
 
 void take_jumps(std::span<const LastingJump> jumps, std::span<Fix> fixes) {
+  std::map<int, std::vector<LastingJump>> of_source;
+  for (const LastingJump& jump : jumps) of_source[jump.source].push_back(jump);
+  for (auto& [source, own] : of_source)
+    std::sort(own.begin(), own.end(), [](const LastingJump& a, const LastingJump& b) { return a.at < b.at; });
   for (Fix& fix : fixes) {
-    std::optional<Stamp> before;
-    std::optional<Stamp> after;
-    double before_m = 0;
-    double after_m = 0;
-    fix.level = 0;
-    for (const LastingJump& jump : jumps) {
-      if (jump.source != fix.source) continue;
-      const bool is_before = jump.at <= fix.stamp;
-      fix.level += is_before;
-      std::optional<Stamp>& nearest = is_before ? before : after;
-      if (nearest && (is_before ? jump.at < *nearest : *nearest < jump.at)) continue;
-      nearest = jump.at;
-      (is_before ? before_m : after_m) = jump.by.norm();
-    }
+    const std::vector<LastingJump>& own = of_source[fix.source];
+    const auto after = std::upper_bound(own.begin(), own.end(), fix.stamp,
+                                        [](Stamp stamp, const LastingJump& jump) { return stamp < jump.at; });
+    const double before_m = after == own.begin() ? 0 : std::prev(after)->by.norm();
+    const double after_m = after == own.end() ? 0 : after->by.norm();
+    fix.level = static_cast<int>(after - own.begin());
     fix.jump_sigma_m = 0.5 * std::max(before_m, after_m);
   }
 }

@@ -49,6 +49,17 @@ Eigen::Vector2d TrialDrive::left_of_fix(std::size_t fix) const {
   return of.position - Eigen::Vector2d(pose[0], pose[1]) - antenna + late_s * velocity_at(fix);
 }
 
+LeftOfFixes TrialDrive::left_of(int source) const {
+  LeftOfFixes left;
+  const std::vector<Fix>& fixes = coarse_.drive.fixes;
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    if (fixes[i].source != source || fixes[i].status != FixStatus::accepted) continue;
+    left.stamps.push_back(fixes[i].stamp);
+    left.off_m.push_back(left_of_fix(i));
+  }
+  return left;
+}
+
 double TrialDrive::spread(double cost) const {
   return std::max(1.0, std::sqrt(cost / static_cast<double>(coarse_.drive.fixes.size())));
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -18,6 +19,12 @@ namespace waymark::drive {
 struct LeastCost {
   double at = 0;
   double sigma = 0;  ///< from the curvature, with TrialDrive::spread()
+};
+
+/// What poses leave of the fixes of a receiver that are in the graph, in the order of time.
+struct LeftOfFixes {
+  std::vector<Stamp> stamps;
+  std::vector<Eigen::Vector2d> off_m;  ///< fix minus antenna, in the frame
 };
 
 /// Refers to what it is made of, which must outlive it.
@@ -39,6 +46,8 @@ class TrialDrive {
   /// Returns what the poses of the last fusion leave of a fix: its position less that of the antenna when it was
   /// measured, m, in the frame.
   [[nodiscard]] Eigen::Vector2d left_of_fix(std::size_t fix) const;
+  /// Returns that for the fixes of a receiver. @param source Fix::source
+  [[nodiscard]] LeftOfFixes left_of(int source) const;
   /// Returns how many times its own noise each fix costs: what no state explains makes a cost steeper than it is known.
   [[nodiscard]] double spread(double cost) const;
   /// Returns the least of a cost near a place; empty where it is not curved upwards.
